@@ -1,0 +1,1 @@
+"""Data of hpsop: cases, hulls, propellers, published reference figures and one finished run."""

@@ -1,0 +1,182 @@
+"""How a field of a case is declared, checked and written: its limits, unit and meaning stand beside it.
+
+Every section of a case is a frozen dataclass whose fields are made by the functions below. ``read_section`` turns a
+TOML table into such a section and refuses whatever it does not understand, in one line that names the field.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+import difflib
+import math
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
+from typing import Any, TypeVar
+
+from hpsop_core.errors import InputError
+
+_KEY = "hpsop"
+Section = TypeVar("Section")
+
+
+@dataclass(frozen=True)
+class FieldRule:
+    """What a field of a case may hold.
+
+    Attributes:
+        kind: "number", "integer", "choice", "text", "numbers" (a list) or "flag".
+        meaning: one line for people.
+        unit: SI unit, or "" for a pure number.
+        lower, upper: inclusive limits of a number.
+        choices: the allowed words of a choice.
+        optional: whether the field may be absent (None).
+    """
+
+    kind: str
+    meaning: str
+    unit: str = ""
+    lower: float = -math.inf
+    upper: float = math.inf
+    choices: tuple[str, ...] = ()
+    optional: bool = False
+
+
+def number(default: float, lower: float, upper: float, meaning: str, unit: str = "") -> Any:
+    """A real number within [lower, upper]."""
+    return dataclasses.field(default=default, metadata={_KEY: FieldRule("number", meaning, unit, lower, upper)})
+
+
+def optional_number(lower: float, upper: float, meaning: str, unit: str = "") -> Any:
+    """A real number within [lower, upper] that may be left out."""
+    rule = FieldRule("number", meaning, unit, lower, upper, optional=True)
+    return dataclasses.field(default=None, metadata={_KEY: rule})
+
+
+def integer(default: int, lower: int, upper: int, meaning: str, unit: str = "") -> Any:
+    """A whole number within [lower, upper]."""
+    return dataclasses.field(default=default, metadata={_KEY: FieldRule("integer", meaning, unit, lower, upper)})
+
+
+def choice(default: str, choices: Sequence[str], meaning: str) -> Any:
+    """One of a few words."""
+    return dataclasses.field(default=default, metadata={_KEY: FieldRule("choice", meaning, choices=tuple(choices))})
+
+
+def text(default: str, meaning: str) -> Any:
+    """Free text."""
+    return dataclasses.field(default=default, metadata={_KEY: FieldRule("text", meaning)})
+
+
+def numbers(default: tuple[float, ...], lower: float, upper: float, meaning: str, unit: str = "") -> Any:
+    """A list of real numbers, each within [lower, upper]."""
+    return dataclasses.field(default=default, metadata={_KEY: FieldRule("numbers", meaning, unit, lower, upper)})
+
+
+def flag(default: bool, meaning: str) -> Any:
+    """Yes or no."""
+    return dataclasses.field(default=default, metadata={_KEY: FieldRule("flag", meaning)})
+
+
+def rules(section: type[Any]) -> dict[str, FieldRule]:
+    """The rule of every field of a section, by field name."""
+    return {field.name: field.metadata[_KEY] for field in dataclasses.fields(section) if _KEY in field.metadata}
+
+
+def unknown_name(name: str, known: Sequence[str], where: str) -> InputError:
+    """The error for a name that does not exist, with the nearest one that does."""
+    near = difflib.get_close_matches(name, known, n=1)
+    remedy = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
+    return InputError(f"{where}: unknown field '{name}'; {remedy}")
+
+
+def checked_value(value: object, rule: FieldRule, where: str) -> Any:
+    """``value`` as the field's type.
+
+    Args:
+        value: what the user gave.
+        rule: the field's rule.
+        where: names the file and field, for the error.
+
+    Raises:
+        InputError: wrong type, NaN or infinite, outside the limits, or no option.
+    """
+    if rule.kind == "flag":
+        if not isinstance(value, bool):
+            raise InputError(f"{where}: {value!r} is not true or false; write true or false")
+        return value
+    if rule.kind == "text":
+        if not isinstance(value, str):
+            raise InputError(f"{where}: {value!r} is not a text; put it in quotes")
+        return value
+    if rule.kind == "choice":
+        if not isinstance(value, str) or value not in rule.choices:
+            raise InputError(f"{where}: {value!r} is no option; use one of {', '.join(rule.choices)}")
+        return value
+    if rule.kind == "numbers":
+        if not isinstance(value, Sequence) or isinstance(value, str):
+            raise InputError(f"{where}: {value!r} is not a list of numbers; write for example [0.22, 0.27]")
+        return tuple(_checked_number(item, rule, f"{where}[{index}]") for index, item in enumerate(value))
+    return _checked_number(value, rule, where)
+
+
+def _checked_number(value: object, rule: FieldRule, where: str) -> float | int:
+    if isinstance(value, bool) or not isinstance(value, (int, float)):
+        raise InputError(f"{where}: {value!r} is not a number; give a number{_limits(rule)}")
+    if not math.isfinite(value):
+        raise InputError(f"{where}: {value} is not a finite number; give a number{_limits(rule)}")
+    if rule.kind == "integer":
+        if float(value) != round(value):
+            raise InputError(f"{where}: {value} is not a whole number; give a whole number{_limits(rule)}")
+        value = round(value)
+    if not rule.lower <= value <= rule.upper:
+        raise InputError(f"{where}: {value:g} is outside its limits; give a number{_limits(rule)}")
+    return value if rule.kind == "integer" else float(value)
+
+
+def _limits(rule: FieldRule) -> str:
+    unit = f" {rule.unit}" if rule.unit else ""
+    return f" from {rule.lower:g} to {rule.upper:g}{unit}" if math.isfinite(rule.lower) else unit
+
+
+def read_section(section: type[Section], table: Mapping[str, object], where: str) -> Section:
+    """A section from a TOML table.
+
+    Args:
+        section: the dataclass of the section.
+        table: the parsed table.
+        where: file and section, for errors.
+
+    Raises:
+        InputError: an unknown field, or a value that its rule refuses.
+    """
+    known = rules(section)
+    values: dict[str, Any] = {}
+    for name, value in table.items():
+        if name not in known:
+            raise unknown_name(name, list(known), where)
+        values[name] = checked_value(value, known[name], f"{where}: {name}")
+    return section(**values)
+
+
+def write_section(name: str, section: object) -> str:
+    """A section as a TOML table, every field stated (so that a stored case never depends on later defaults)."""
+    lines = [f"[{name}]"]
+    for field_name in rules(type(section)):
+        value = getattr(section, field_name)
+        if value is not None:
+            lines.append(f"{field_name} = {toml_value(value)}")
+    return "\n".join(lines) + "\n"
+
+
+def toml_value(value: object) -> str:
+    """A value in TOML's notation; floats keep all their digits."""
+    if isinstance(value, bool):
+        return "true" if value else "false"
+    if isinstance(value, (int, float)):
+        return repr(value)
+    if isinstance(value, str):
+        escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t")
+        return f'"{escaped}"'
+    if isinstance(value, Sequence):
+        return "[" + ", ".join(toml_value(item) for item in value) + "]"
+    raise TypeError(f"no TOML notation for {type(value).__name__}")
