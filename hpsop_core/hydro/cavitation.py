@@ -1,0 +1,50 @@
+"""Keller's criterion and the cavitation number."""
+
+from __future__ import annotations
+
+import math
+
+
+def pressure_margin(
+    shaft_immersion: float, density: float, gravity: float, atmospheric_pressure: float, vapour_pressure: float
+) -> float:
+    """P0 - Pv in Pa at the shaft: atmosphere and head of water over it, less vapour pressure.
+
+    Args:
+        shaft_immersion: in m below the water surface.
+        density: in kg/m3.
+        gravity: in m/s2.
+        atmospheric_pressure, vapour_pressure: in Pa.
+    """
+    return atmospheric_pressure + density * gravity * shaft_immersion - vapour_pressure
+
+
+def keller_expanded_area_ratio(
+    blade_count: int, thrust: float, diameter: float, pressure_margin_pascal: float, keller_k: float
+) -> float:
+    """Least expanded area ratio (1.3 + 0.3 Z) T/((P0 - Pv) D^2) + K (paper, equation 3, third constraint).
+
+    Args:
+        blade_count: Z.
+        thrust: T in N.
+        diameter: D in m.
+        pressure_margin_pascal: P0 - Pv at the shaft, in Pa.
+        keller_k: K, 0 to 0.2.
+    """
+    return (1.3 + 0.3 * blade_count) * thrust / (pressure_margin_pascal * diameter**2) + keller_k
+
+
+def cavitation_number(
+    pressure_margin_pascal: float, density: float, advance_speed: float, rotation_rate: float, diameter: float
+) -> float:
+    """sigma = (P0 - Pv)/(1/2 rho (V_A^2 + (0.7 pi n D)^2)), at the shaft's depth and the speed of the 0.7 R section.
+
+    Args:
+        pressure_margin_pascal: P0 - Pv in Pa.
+        density: kg/m3.
+        advance_speed: V_A in m/s.
+        rotation_rate: n in 1/s.
+        diameter: D in m.
+    """
+    speed_squared = advance_speed**2 + (0.7 * math.pi * rotation_rate * diameter) ** 2
+    return pressure_margin_pascal / (0.5 * density * speed_squared)

@@ -1,0 +1,103 @@
+"""From the design's propeller to its open-water curves at full scale; remembered apart from the hull."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+import numpy as np
+
+from hpsop_core.case_sections import PropellerSection
+from hpsop_core.design import DesignVariables
+from hpsop_core.geometry.propeller import Propeller, RadialTable, load_propeller, propeller_family
+from hpsop_core.geometry.propeller_input import radial_table_from_csv
+from hpsop_core.hydro import blade_panels, lifting_line
+from hpsop_core.hydro.open_water import OpenWater, SectionDrag
+from hpsop_core.hydro.operating_point import PropellerCurve, chebyshev_nodes
+from hpsop_core.typing_aliases import Array
+
+# Operating points of a ship's propeller lie between; beyond the upper end P4119 gives no thrust.
+ADVANCE_RANGE = (0.25, 1.15)
+NODE_COUNT = 7
+
+
+@dataclass(frozen=True)
+class PropellerVariables:
+    """What of a design decides the propeller; the key under which its curves are remembered."""
+
+    section: PropellerSection
+    diameter: float
+    blade_count: int
+    pitch_ratio: float
+    expanded_area_ratio: float
+
+
+def propeller_variables(section: PropellerSection, variables: DesignVariables) -> PropellerVariables:
+    """The propeller's share of a design."""
+    return PropellerVariables(
+        section, variables.diameter, variables.blade_count, variables.pitch_ratio, variables.expanded_area_ratio
+    )
+
+
+@lru_cache(maxsize=8)
+def parent_table(section: PropellerSection) -> RadialTable:
+    """The radial table that a case names.
+
+    Raises:
+        InputError: a file that cannot be used.
+    """
+    if section.geometry:
+        return radial_table_from_csv(Path(section.geometry), section.geometry_blade_count)
+    return load_propeller(section.parent)
+
+
+@lru_cache(maxsize=512)
+def build_propeller(variables: PropellerVariables) -> Propeller:
+    """The propeller of a design.
+
+    Raises:
+        SolverFailure: the family does not reach it.
+    """
+    return propeller_family(
+        parent_table(variables.section),
+        variables.diameter,
+        variables.blade_count,
+        variables.pitch_ratio,
+        variables.expanded_area_ratio,
+    )
+
+
+@lru_cache(maxsize=4096)
+def propeller_curve(variables: PropellerVariables, level: int, roughness: float) -> PropellerCurve:
+    """Open-water curves at full scale between the ends of ``ADVANCE_RANGE``.
+
+    The section drag is ITTC-78's rough line, which does not depend on the rate of revolutions, so one curve serves
+    every condition.
+
+    Args:
+        variables: the propeller.
+        level: 1 lifting line, 2 panel method.
+        roughness: of the blades, in m.
+
+    Raises:
+        SolverFailure: the solver does not converge; names the J.
+    """
+    nodes = chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
+    result = solve_open_water(build_propeller(variables), level, nodes, SectionDrag.full_scale(roughness))
+    return PropellerCurve(nodes, result.thrust_coefficient, result.torque_coefficient)
+
+
+def solve_open_water(
+    propeller: Propeller, level: int, advance_coefficients: Array | Sequence[float], drag: SectionDrag
+) -> OpenWater:
+    """Open-water results of a propeller at a level, straight from its solver.
+
+    Raises:
+        SolverFailure: the solver does not converge; names the J.
+    """
+    advance = np.asarray(advance_coefficients, dtype=float)
+    if level == 1:
+        return lifting_line.solve(propeller, advance, drag)
+    return blade_panels.solve(propeller, advance, drag).open_water
