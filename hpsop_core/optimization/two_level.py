@@ -1,0 +1,265 @@
+"""The paper's search over two levels of fidelity, as a state machine without files, processes or clocks.
+
+The plan of a run of N generations, n of them at level 1:
+
+* Generation 1 is the initial sample: a Latin hypercube with the initial design's projection on the bounds in it.
+* Level 1 goes on to generation n, or until its hypervolume has grown by less than a stated share over a window of
+  generations. Then level 1's last population is the first one of level 2, where it is evaluated anew: that is a
+  generation too. A stated share of it is replaced by a fresh Latin hypercube, and the initial design is kept in it.
+* Level 2 has all the rest: N stays what was asked, also when level 1 stagnated early.
+
+Everything is a function of the settings, the seed and the answers told: to resume a run is to ask and answer again.
+"""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+
+import numpy as np
+
+from hpsop_core.case_sections import OptimizationSection
+from hpsop_core.design import DesignSpace, DesignVariables
+from hpsop_core.errors import InputError
+from hpsop_core.optimization.decision import compromise, knee
+from hpsop_core.optimization.indicators import FrontArchive, feasible_share, hypervolume, spread
+from hpsop_core.optimization.nsga2 import Nsga2, Operators
+from hpsop_core.optimization.problem import Candidate, Outcome, algorithm_view
+from hpsop_core.optimization.sampling import derived_seed, latin_hypercube
+from hpsop_core.typing_aliases import Array
+
+_SAMPLE, _SEARCH = 0, 1  # purposes of derived seeds
+
+
+@dataclass(frozen=True)
+class Generation:
+    """What a generation came to. Ids are evaluations of the run.
+
+    Attributes:
+        number: from 1.
+        level: 1 or 2.
+        asked: the designs of this generation, in the order asked.
+        members: the population that survived, best first.
+        front: the non-dominated feasible members, ascending in f1: NSGA-II's Pareto front.
+        hypervolume: of the front, below (1.2, 1.2). Crowding may take a design off a full front: it can fall a little.
+        spread: of the front; None for fewer than three designs.
+        feasible_share: of the members.
+        failures: failed evaluations among the designs asked.
+        compromise, knee: of the front; None if it is empty.
+        note: "" or why the level ends here.
+    """
+
+    number: int
+    level: int
+    asked: tuple[int, ...]
+    members: tuple[int, ...]
+    front: tuple[int, ...]
+    hypervolume: float
+    spread: float | None
+    feasible_share: float
+    failures: int
+    compromise: int | None
+    knee: int | None
+    note: str
+
+
+class TwoLevelSearch:
+    """Proposes the designs of one generation after another; see the module's text for the plan.
+
+    Args:
+        space: the design space.
+        settings: the case's ``[optimization]``.
+        initial: the initial design, inside the bounds or not.
+        seeds: designs, for example an old run's front, whose projections take places in the first sample.
+
+    Raises:
+        InputError: every variable is fixed.
+    """
+
+    def __init__(
+        self,
+        space: DesignSpace,
+        settings: OptimizationSection,
+        initial: DesignVariables,
+        seeds: Sequence[DesignVariables] = (),
+    ) -> None:
+        if not space.free:
+            raise InputError("bounds: every variable is fixed; give at least one a lower bound below its upper one")
+        self._space = space
+        self._settings = settings
+        self._initial = space.project(initial)
+        self._seeds = tuple(space.project(seed) for seed in seeds)
+        self._generations = settings.generations
+        self._level1_generations = settings.level1_generations
+        self._number = 0
+        self._level = 1 if settings.level1_generations > 0 else 2
+        self._algorithm: Nsga2 | None = None
+        self._archive = FrontArchive()
+        self._outcomes: dict[int, Outcome] = {}
+        self._variables: dict[int, DesignVariables] = {}
+        self._archive_hypervolumes: list[float] = []
+        self._asked: tuple[Candidate, ...] = ()
+        self._last_members: tuple[int, ...] = ()
+        self._exhausted = False
+
+    @property
+    def generations(self) -> int:
+        """The total asked for."""
+        return self._generations
+
+    @property
+    def number(self) -> int:
+        """Generations told so far."""
+        return self._number
+
+    @property
+    def level(self) -> int:
+        """The level of the next generation."""
+        return self._level
+
+    @property
+    def finished(self) -> bool:
+        """Whether every generation is told, or no new design can be made."""
+        return self._exhausted or self._number >= self._generations
+
+    def extend(self, generations: int) -> None:
+        """Ask for a greater total. A run that never leaves level 1 stays there, any other gets more of level 2.
+
+        Raises:
+            ValueError: fewer than are already planned.
+        """
+        if generations < self._generations:
+            raise ValueError(f"{generations} generations are fewer than the {self._generations} planned")
+        if self._level1_generations >= self._generations:
+            self._level1_generations = generations
+        self._generations = generations
+
+    def ask(self) -> tuple[Candidate, ...]:
+        """The designs of the next generation, in order; empty when the search is finished. Repeatable until told."""
+        if self._asked or self.finished:
+            return self._asked
+        if self._algorithm is None:
+            vectors, origins = self._first_population() if self._number == 0 else self._handed_over()
+            seed = derived_seed(self._settings.seed, self._level, _SEARCH)
+            self._algorithm = Nsga2(self._space, self._operators, vectors, seed)
+            named = {self._space.decode(vector): origin for vector, origin in zip(vectors, origins, strict=True)}
+        else:
+            named = {}
+        asked = self._algorithm.ask()
+        if asked is None:
+            return self._nothing_new()
+        designs = [self._space.decode(vector) for vector in asked]
+        self._asked = tuple(Candidate(self._level, design, named.get(design, "offspring")) for design in designs)
+        return self._asked
+
+    def _nothing_new(self) -> tuple[Candidate, ...]:
+        # A space with few integer designs can be used up. Level 1 then hands over, level 2 ends.
+        if self._level == 1 and self._level1_generations < self._generations:
+            self._begin_level2()
+            return self.ask()
+        self._exhausted = True
+        return ()
+
+    def tell(self, outcomes: Sequence[Outcome]) -> Generation:
+        """Answer the last ``ask``, in the order asked.
+
+        Returns:
+            The generation.
+
+        Raises:
+            ValueError: nothing was asked, or the number of outcomes differs.
+        """
+        if not self._asked or self._algorithm is None or len(outcomes) != len(self._asked):
+            raise ValueError("tell must answer the last ask, design for design")
+        settings = self._settings
+        for candidate, outcome in zip(self._asked, outcomes, strict=True):
+            self._outcomes[outcome.evaluation_id] = outcome
+            self._variables[outcome.evaluation_id] = candidate.variables
+        view = algorithm_view(list(outcomes), settings.constraint_handling, settings.penalty_factor)
+        self._algorithm.tell([outcome.evaluation_id for outcome in outcomes], *view)
+        self._archive.add(outcomes)
+        self._archive_hypervolumes.append(hypervolume(self._archive.objectives))
+        self._number += 1
+        self._asked = ()
+        members = self._algorithm.population
+        self._last_members = members
+        survivors = [self._outcomes[member] for member in members]
+        front = FrontArchive()
+        front.add(survivors)
+        chosen, bend = compromise(front.objectives), knee(front.objectives)
+        generation = Generation(
+            number=self._number,
+            level=self._level,
+            asked=tuple(outcome.evaluation_id for outcome in outcomes),
+            members=members,
+            front=front.ids,
+            hypervolume=hypervolume(front.objectives),
+            spread=spread(front.objectives),
+            feasible_share=feasible_share(survivors),
+            failures=sum(outcome.failed for outcome in outcomes),
+            compromise=None if chosen is None else front.ids[chosen],
+            knee=None if bend is None else front.ids[bend],
+            note=self._end_of_level(),
+        )
+        if generation.note and self._number < self._generations:
+            self._begin_level2()
+        return generation
+
+    def _end_of_level(self) -> str:
+        if self._level == 2:
+            return ""
+        if self._number >= self._level1_generations:
+            return "" if self._number >= self._generations else "level 1 has had its generations"
+        window, tolerance = self._settings.stagnation_window, self._settings.stagnation_tolerance
+        if tolerance <= 0.0 or len(self._archive_hypervolumes) <= window:
+            return ""
+        # Of everything seen, not of the front: that one never falls, so a gain is a gain.
+        before, now = self._archive_hypervolumes[-1 - window], self._archive_hypervolumes[-1]
+        # A front that does not exist yet, or lies beyond the reference point, is no front that stagnates.
+        if before > 0.0 and now - before < tolerance * before and self._level1_generations < self._generations:
+            return f"level 1's hypervolume grew by less than {tolerance:g} of itself in {window} generations"
+        return ""
+
+    def _begin_level2(self) -> None:
+        self._level = 2
+        self._algorithm = None
+        self._archive = FrontArchive()
+        self._archive_hypervolumes = []
+
+    @property
+    def _operators(self) -> Operators:
+        settings = self._settings
+        return Operators(
+            population=settings.population,
+            crossover_probability=settings.crossover_probability,
+            crossover_eta=settings.crossover_eta,
+            mutation_probability=settings.mutation_probability,
+            mutation_eta=settings.mutation_eta,
+        )
+
+    def _first_population(self) -> tuple[Array, list[str]]:
+        population = self._settings.population
+        placed: dict[DesignVariables, str] = {}
+        if self._settings.keep_initial:
+            placed[self._initial] = "sample"
+        for seed in self._seeds:
+            if len(placed) < population:
+                placed.setdefault(seed, "seed")
+        return self._filled(placed, population, "sample")
+
+    def _handed_over(self) -> tuple[Array, list[str]]:
+        population = self._settings.population
+        fresh = int(np.floor(self._settings.reseed_share * population + 0.5))
+        kept = [self._variables[member] for member in self._last_members][: population - fresh]
+        # Without re-seeding the last generation of level 1 goes over as it is: the paper's hand-over.
+        if self._settings.keep_initial and fresh > 0 and self._initial not in kept:
+            kept = [*kept[: max(0, population - fresh - 1)], self._initial]
+        return self._filled(dict.fromkeys(kept[:population], "handover"), population, "reseed")
+
+    def _filled(self, placed: dict[DesignVariables, str], population: int, origin: str) -> tuple[Array, list[str]]:
+        # Only a re-seeded hand-over or a first sample has room; level 1 may also have ended on a small population.
+        missing = population - len(placed)
+        sample = latin_hypercube(self._space, missing, derived_seed(self._settings.seed, self._level, _SAMPLE))
+        given = [self._space.encode(design) for design in placed]
+        vectors = np.array(given).reshape(len(placed), len(self._space.free))
+        return np.vstack((vectors, sample)), [*placed.values(), *([origin] * missing)]
