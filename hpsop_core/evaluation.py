@@ -340,11 +340,16 @@ def _condition(
         cavitation_number=cavitation.cavitation_number(
             margin, constants.density, advance_speed, operating.rotation_rate, propeller.diameter
         ),
-        reynolds_number_07R=section_speed * propeller.chord_07R / constants.viscosity,
+        reynolds_number_07R=section_speed * _chord_07r(propeller) / constants.viscosity,
         wave_coefficient_pressure=point.wave_coefficient_pressure,
         sinkage=point.sinkage,
         trim=point.trim,
     )
+
+
+def _chord_07r(propeller: Propeller) -> float:
+    """Chord length at 0.7 R in m."""
+    return float(propeller.table.at(np.array(0.7)).chord_ratio) * propeller.diameter
 
 
 def _assess(

@@ -1,0 +1,49 @@
+# The two commands a newcomer needs: `make explore` and `make test`.
+PYTHON ?= python3
+VENV := .venv
+BIN := $(VENV)/bin
+INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+# One thread of linear algebra a process: the same bits everywhere, and two cores for two workers.
+export OPENBLAS_NUM_THREADS := 1
+export OMP_NUM_THREADS := 1
+
+.PHONY: explore test test-core lint soak benchmark pictures clean
+
+explore: $(VENV)/installed
+	$(BIN)/hpsop-explore $(ARGS)
+
+test: lint chromium
+	$(BIN)/python -m pytest -m "not soak"
+
+test-core: lint
+	$(BIN)/python -m pytest -m "not soak and not browser"
+
+lint: $(VENV)/installed-for-tests
+	$(BIN)/ruff check .
+	$(BIN)/mypy
+
+soak: $(VENV)/installed-for-tests
+	$(BIN)/python -m pytest -m soak
+
+benchmark: $(VENV)/installed-for-tests
+	for script in benchmarks/bench_*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+
+.PHONY: chromium
+chromium:
+	@.ci/chromium
+
+$(VENV)/bin/python:
+	@$(PYTHON) -c 'import sys; sys.exit(sys.version_info < (3, 11))' \
+		|| { echo "hpsop needs Python 3.11 or newer; set PYTHON=python3.11" >&2; exit 1; }
+	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); echo "no virtual environment: install the package python3-venv" >&2; exit 1; }
+
+$(VENV)/installed: $(VENV)/bin/python pyproject.toml constraints.txt
+	$(INSTALL) --editable .
+	@touch $@
+
+$(VENV)/installed-for-tests: $(VENV)/bin/python pyproject.toml constraints.txt
+	$(INSTALL) --editable '.[test]'
+	@touch $@ $(VENV)/installed
+
+clean:
+	rm -rf $(VENV) build *.egg-info .mypy_cache .ruff_cache .pytest_cache

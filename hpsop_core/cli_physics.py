@@ -1,0 +1,292 @@
+"""The commands ``evaluate``, ``resistance``, ``open-water`` and ``validate``."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+from hpsop_core.case_fields import FieldRule
+from hpsop_core.case_sections import HullSection
+from hpsop_core.cli_arguments import (
+    add_json,
+    add_level,
+    add_set,
+    case_and_design,
+    checked_option,
+    describe_variables,
+    number_list,
+    print_json,
+    print_table,
+)
+from hpsop_core.errors import InputError
+from hpsop_core.evaluation_result import Evaluation
+
+FROUDE_RULE = FieldRule("number", "Froude number", "", 0.1, 0.5)
+ADVANCE_RULE = FieldRule("number", "advance coefficient", "", 0.05, 2.0)
+# ITTC recommended properties at 15 C: density in kg/m3, kinematic viscosity in m2/s.
+WATERS = {"salt": (1025.0, 1.188e-6), "fresh": (999.1, 1.1386e-6)}
+# P4119's open-water test: diameter in m, rotation rate in 1/s, viscosity in m2/s.
+MODEL_TEST = (0.3048, 10.0, 1e-6)
+
+
+def add_parsers(commands: Any) -> None:
+    """Add the four commands to the parser."""
+    evaluate = commands.add_parser("evaluate", help="everything about one design of a case")
+    evaluate.add_argument("case", metavar="CASE", help="a shipped case's name or a TOML file")
+    add_level(evaluate)
+    add_set(evaluate)
+    add_json(evaluate)
+    evaluate.set_defaults(handler=_evaluate)
+
+    resistance = commands.add_parser("resistance", help="resistance of a hull over Froude numbers")
+    resistance.add_argument("case", metavar="CASE", nargs="?", help="a shipped case's name or a TOML file")
+    resistance.add_argument("--offsets", metavar="FILE.csv", help="station_x_m,waterline_z_m,half_breadth_m, in metres")
+    resistance.add_argument("--length", metavar="L", help="Lpp in m, with --offsets")
+    resistance.add_argument("--draft", metavar="D", help="waterline above z = 0 in m, with --offsets")
+    resistance.add_argument("--froude", metavar="F[,F...]", required=True, help="Froude numbers V/sqrt(g Lpp)")
+    resistance.add_argument("--form-factor", metavar="K", help="k on ITTC-57; the case's, or 0 with --offsets")
+    resistance.add_argument("--water", metavar="salt|fresh|RHO,NU", help="the case's, or salt with --offsets")
+    add_level(resistance)
+    add_set(resistance)
+    add_json(resistance)
+    resistance.set_defaults(handler=_resistance)
+
+    open_water = commands.add_parser("open-water", help="KT, KQ and efficiency of a propeller, at model scale")
+    open_water.add_argument("case", metavar="CASE", nargs="?", help="a shipped case's name or a TOML file")
+    open_water.add_argument("--geometry", metavar="FILE.csv", help="r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c")
+    open_water.add_argument("--blades", metavar="Z", help="number of blades, with --geometry")
+    open_water.add_argument("--advance", metavar="J[,J...]", required=True, help="advance coefficients")
+    open_water.add_argument("--diameter", metavar="D", help=f"in m, {MODEL_TEST[0]} unless given")
+    open_water.add_argument("--rotation-rate", metavar="N", help=f"in 1/s, {MODEL_TEST[1]} unless given")
+    open_water.add_argument("--viscosity", metavar="NU", help=f"in m2/s, {MODEL_TEST[2]} unless given")
+    open_water.add_argument("--inviscid", action="store_true", help="without section drag")
+    add_level(open_water)
+    add_set(open_water)
+    add_json(open_water)
+    open_water.set_defaults(handler=_open_water)
+
+    validate = commands.add_parser("validate", help="every validation case beside its published reference")
+    add_json(validate)
+    validate.set_defaults(handler=_validate)
+
+
+def _evaluate(arguments: argparse.Namespace) -> int:
+    from hpsop_core.evaluation import evaluate
+
+    case, variables = case_and_design(arguments.case, arguments.changes)
+    result = evaluate(case, variables, arguments.level)
+    if arguments.json:
+        print_json(result.as_dict())
+    else:
+        _print_evaluation(result)
+    return 0 if result.ok else 1
+
+
+def _print_evaluation(result: Evaluation) -> None:
+    print(f"{result.case}, level {result.level}: {result.status}{' - ' + result.reason if result.reason else ''}")
+    print("\n".join(describe_variables(result.variables)))
+    if result.hull is None or not result.conditions:
+        return
+    hull = result.hull
+    print(
+        f"hull: Lpp {hull.length:.2f} m, B {hull.breadth:.2f} m, d {hull.draft:.2f} m, "
+        f"CB {hull.block_coefficient:.4f}, volume {hull.displaced_volume:,.0f} m3, S {hull.wetted_surface:,.0f} m2, "
+        f"LCB {hull.longitudinal_centre_of_buoyancy:.2f} m from AP"
+    )
+    if hull.booked_volume is not None:
+        print(f"booked (affine form): CB {hull.booked_block_coefficient:.4f}, volume {hull.booked_volume:,.0f} m3")
+    header = "Fn,V m/s,Rf MN,Rw MN,Rt MN,w,t,J,n rpm,KT,10KQ,eta0,PD MW,EAR req".split(",")
+    rows = [
+        [
+            f"{c.froude_number:.4f}", f"{c.speed:.3f}", f"{c.friction_resistance / 1e6:.3f}",
+            f"{c.wave_resistance / 1e6:.3f}", f"{c.total_resistance / 1e6:.3f}", f"{c.wake_fraction:.4f}",
+            f"{c.thrust_deduction:.4f}", f"{c.advance_coefficient:.4f}", f"{c.rotation_rate_rpm:.2f}",
+            f"{c.thrust_coefficient:.4f}", f"{10 * c.torque_coefficient:.4f}", f"{c.open_water_efficiency:.4f}",
+            f"{c.delivered_power / 1e6:.2f}", f"{c.required_expanded_area_ratio:.3f}",
+        ]
+        for c in result.conditions
+    ]  # fmt: skip
+    print_table(header, rows)
+    print("objectives: " + ", ".join(f"{name} {value:.5f}" for name, value in result.objectives.items() if value))
+    limits = ", ".join(
+        f"{name} {'not applied' if value is None else format(value, '+.4f')}"
+        for name, value in result.constraints.items()
+    )
+    print(f"constraints (g <= 0): {limits}; {'feasible' if result.feasible else 'NOT feasible'}")
+    for warning in result.warnings:
+        print(f"warning: {warning}")
+
+
+def _water(word: str | None, default: tuple[float, float]) -> tuple[float, float]:
+    if word is None:
+        return default
+    if word in WATERS:
+        return WATERS[word]
+    parts = word.split(",")
+    if len(parts) != 2:
+        raise InputError(f"--water {word}: write salt, fresh or DENSITY,VISCOSITY, for example 998.8,1.09e-6")
+    density = checked_option(parts[0], FieldRule("number", "", "kg/m3", 900.0, 1100.0), "--water density")
+    viscosity = checked_option(parts[1], FieldRule("number", "", "m2/s", 5e-7, 3e-6), "--water viscosity")
+    return float(density or 0.0), float(viscosity or 0.0)
+
+
+def _resistance(arguments: argparse.Namespace) -> int:
+    from hpsop_core.case_sections import ConstantsSection
+    from hpsop_core.evaluation import initial_volume, resistance_curve
+    from hpsop_core.resistance import build_hull, hull_variables, parent_hull, resistance_point, solve_waves
+
+    froude_numbers = number_list(arguments.froude, FROUDE_RULE, "--froude")
+    form_factor = checked_option(arguments.form_factor, FieldRule("number", "", "", 0.0, 1.0), "--form-factor")
+    if (arguments.case is None) == (arguments.offsets is None):
+        raise InputError("resistance: give either a CASE or --offsets FILE.csv with --length and --draft")
+    if arguments.offsets is not None:
+        if arguments.length is None or arguments.draft is None:
+            raise InputError("resistance: --offsets needs --length (Lpp) and --draft, in metres")
+        if arguments.changes:
+            raise InputError("resistance: --set changes a case's design; an offsets table is taken as it is")
+        length = checked_option(arguments.length, FieldRule("number", "", "m", 0.1, 600.0), "--length")
+        draft = checked_option(arguments.draft, FieldRule("number", "", "m", 0.005, 40.0), "--draft")
+        section = HullSection(offsets=str(Path(arguments.offsets)), length=length, draft=draft)
+        parent = parent_hull(section)
+        density, viscosity = _water(arguments.water, WATERS["salt"])
+        hull = parent.as_given()
+        points = [
+            resistance_point(
+                hull, wave, froude, gravity=ConstantsSection.gravity, density=density, viscosity=viscosity,
+                form_factor=form_factor or 0.0,
+            )
+            for froude, wave in zip(froude_numbers, solve_waves(hull, arguments.level, froude_numbers), strict=True)
+        ]  # fmt: skip
+    else:
+        if arguments.length is not None or arguments.draft is not None:
+            raise InputError("resistance: --length and --draft go with --offsets; change a case by --set")
+        case, variables = case_and_design(arguments.case, arguments.changes)
+        density, viscosity = _water(arguments.water, (case.constants.density, case.constants.viscosity))
+        case = dataclasses.replace(
+            case, constants=dataclasses.replace(case.constants, density=density, viscosity=viscosity)
+        )
+        points = list(
+            resistance_curve(case, variables, arguments.level, froude_numbers, form_factor=form_factor)
+        )
+        hull = build_hull(hull_variables(case.hull, variables, initial_volume(case)))
+    hydrostatics = hull.hydrostatics
+    figures = {
+        "length": hull.length,
+        "breadth": hull.breadth,
+        "draft": hull.draft,
+        "block_coefficient": hydrostatics.block_coefficient,
+        "displaced_volume": hydrostatics.displaced_volume,
+        "wetted_surface": hydrostatics.wetted_surface,
+        "longitudinal_centre_of_buoyancy": hydrostatics.longitudinal_centre_of_buoyancy,
+    }
+    if arguments.json:
+        print_json({"hull": figures, "points": [dataclasses.asdict(point) for point in points]})
+        return 0
+    print(", ".join(f"{name} {value:.6g}" for name, value in figures.items()))
+    for warning in hull.warnings:
+        print(f"warning: {warning}", file=sys.stderr)
+    rows = [
+        [
+            f"{p.froude_number:.4f}", f"{p.speed:.4f}", f"{1e3 * p.friction_coefficient:.4f}",
+            f"{1e3 * p.wave_coefficient:.4f}",
+            "-" if p.wave_coefficient_pressure is None else f"{1e3 * p.wave_coefficient_pressure:.4f}",
+            f"{p.wave_resistance:.6g}", f"{p.total_resistance:.6g}",
+        ]
+        for p in points
+    ]  # fmt: skip
+    print_table(["Fn", "V m/s", "10^3 CF", "10^3 Cw", "10^3 Cw(p)", "Rw N", "Rt N"], rows)
+    return 0
+
+
+def _open_water(arguments: argparse.Namespace) -> int:
+    from hpsop_core.evaluation import design_propeller
+    from hpsop_core.geometry.propeller import propeller_family, radial_table_from_csv
+    from hpsop_core.hydro.open_water import SectionDrag
+    from hpsop_core.propulsion import solve_open_water
+
+    advance = number_list(arguments.advance, ADVANCE_RULE, "--advance")
+    diameter = checked_option(arguments.diameter, FieldRule("number", "", "m", 0.01, 20.0), "--diameter")
+    rate = checked_option(arguments.rotation_rate, FieldRule("number", "", "1/s", 0.1, 200.0), "--rotation-rate")
+    viscosity = checked_option(arguments.viscosity, FieldRule("number", "", "m2/s", 1e-7, 1e-4), "--viscosity")
+    if (arguments.case is None) == (arguments.geometry is None):
+        raise InputError("open-water: give either a CASE or --geometry FILE.csv with --blades")
+    size = MODEL_TEST[0] if diameter is None else diameter
+    if arguments.geometry is not None:
+        if arguments.blades is None:
+            raise InputError("open-water: --geometry needs --blades, the number of blades")
+        if arguments.changes:
+            raise InputError("open-water: --set changes a case's design; a radial table is taken as it is")
+        blades = checked_option(arguments.blades, FieldRule("integer", "", "", 2, 7), "--blades")
+        table = radial_table_from_csv(Path(arguments.geometry), int(blades or 0))
+        propeller = propeller_family(table, size, int(blades or 0))
+    else:
+        if arguments.blades is not None:
+            raise InputError("open-water: --blades goes with --geometry; change a case by --set blade_count=Z")
+        case, variables = case_and_design(arguments.case, arguments.changes)
+        propeller = design_propeller(case, variables).with_diameter(size)
+    if arguments.inviscid:
+        drag = SectionDrag.inviscid()
+    else:
+        drag = SectionDrag.model_scale(
+            MODEL_TEST[1] if rate is None else rate, MODEL_TEST[2] if viscosity is None else viscosity
+        )
+    result = solve_open_water(propeller, arguments.level, advance, drag)
+    points = []
+    for j, kt, kq in zip(advance, result.thrust_coefficient, result.torque_coefficient, strict=True):
+        points.append(
+            {
+                "advance_coefficient": j,
+                "thrust_coefficient": float(kt),
+                "torque_coefficient": float(kq),
+                # The identity, so that no rounding of a solver's own stands between the three numbers.
+                "open_water_efficiency": float(j * kt / (2.0 * math.pi * kq)) if kq > 0.0 else None,
+            }
+        )
+    if arguments.json:
+        print_json(
+            {
+                "level": arguments.level,
+                "diameter": propeller.diameter,
+                "blade_count": propeller.blade_count,
+                "expanded_area_ratio": propeller.expanded_area_ratio,
+                "reynolds_number_07R": _plain(result.reynolds_number_07R),
+                "points": points,
+            }
+        )
+        return 0
+    rows = [
+        [f"{p['advance_coefficient']:.4f}", f"{p['thrust_coefficient']:.5f}", f"{10 * p['torque_coefficient']:.5f}",
+         "-" if p["open_water_efficiency"] is None else f"{p['open_water_efficiency']:.4f}"]
+        for p in points
+    ]  # fmt: skip
+    print_table(["J", "KT", "10KQ", "eta0"], rows)
+    return 0
+
+
+def _plain(value: Any) -> Any:
+    """A number or a list of numbers from a number or an array."""
+    return value.tolist() if hasattr(value, "tolist") else value
+
+
+def _validate(arguments: argparse.Namespace) -> int:
+    from hpsop_core.validation import all_checks
+
+    results = []
+    for check in all_checks():
+        results.append(check)
+        if not arguments.json:
+            mark = "pass" if check.passed else "MISS"
+            print(
+                f"{mark}  {check.group}: {check.quantity}: computed {check.computed:.6g}, reference "
+                f"{check.reference:.6g} ({check.source}; {check.tolerance})",
+                flush=True,
+            )
+    if arguments.json:
+        print_json({"checks": [dataclasses.asdict(check) for check in results]})
+    missed = sum(not check.passed for check in results)
+    print(f"{len(results) - missed} of {len(results)} checks within their tolerance", file=sys.stderr)
+    return 0 if missed == 0 else 1
