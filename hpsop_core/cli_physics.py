@@ -99,7 +99,7 @@ def _print_evaluation(result: Evaluation) -> None:
     )
     if hull.booked_volume is not None:
         print(f"booked (affine form): CB {hull.booked_block_coefficient:.4f}, volume {hull.booked_volume:,.0f} m3")
-    header = "Fn,V m/s,Rf MN,Rw MN,Rt MN,w,t,J,n rpm,KT,10KQ,eta0,PD MW,EAR req".split(",")
+    header = ["Fn", "V m/s", "Rf MN", "Rw MN", "Rt MN", "w", "t", "J", "n rpm", "KT", "10KQ", "eta0", "PD MW", "EAR"]
     rows = [
         [
             f"{c.froude_number:.4f}", f"{c.speed:.3f}", f"{c.friction_resistance / 1e6:.3f}",
