@@ -27,7 +27,7 @@ from hpsop_core.errors import InputError
 SHIPPED_CASES = ("dtc-p4119", "dtc-p4119-paper", "dtc-p4119-power")
 DEFAULT_CASE = SHIPPED_CASES[0]
 
-_SECTIONS: dict[str, type[Any]] = {
+SECTIONS: dict[str, type[Any]] = {
     "hull": HullSection,
     "propeller": PropellerSection,
     "initial": InitialSection,
@@ -82,7 +82,7 @@ class Case:
         """The case as TOML, every field stated; ``case_from_toml`` gives the same case again."""
         head = "".join(f"{name} = {toml_value(getattr(self, name))}\n" for name in _TEXTS)
         parts = [head]
-        for name in _SECTIONS:
+        for name in SECTIONS:
             parts.append(write_section(name, getattr(self, name)))
             if name == "initial":
                 pairs = "".join(f"{key} = {toml_value(pair)}\n" for key, pair in self.bounds.as_dict().items())
@@ -95,7 +95,7 @@ class Case:
         Raises:
             InputError: an unknown field or a refused value.
         """
-        known = rules(_SECTIONS[section])
+        known = rules(SECTIONS[section])
         checked = {}
         for name, value in changes.items():
             if name not in known:
@@ -146,7 +146,7 @@ def case_from_toml(content: str, where: str, folder: Path | None = None) -> Case
         tables = tomllib.loads(content)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{where}: not valid TOML: {error}; mend that line") from error
-    known = [*_TEXTS, "bounds", *_SECTIONS]
+    known = [*_TEXTS, "bounds", *SECTIONS]
     values: dict[str, Any] = {}
     for key, value in tables.items():
         if key not in known:
@@ -169,7 +169,7 @@ def _assembled(
 ) -> Case:
     try:
         sections = {
-            name: read_section(section, tables.get(name, {}), name) for name, section in _SECTIONS.items()
+            name: read_section(section, tables.get(name, {}), name) for name, section in SECTIONS.items()
         }
         sections["hull"] = _absolute(sections["hull"], ("offsets", "stl"), folder)
         sections["propeller"] = _absolute(sections["propeller"], ("geometry",), folder)
