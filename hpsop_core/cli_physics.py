@@ -153,7 +153,7 @@ def _resistance(arguments: argparse.Namespace) -> int:
         section = HullSection(offsets=str(Path(arguments.offsets)), length=length, draft=draft)
         parent = parent_hull(section)
         density, viscosity = _water(arguments.water, WATERS["salt"])
-        hull = parent.as_given()
+        hull = parent.transform(parent.length, parent.breadth, parent.draft)
         points = [
             resistance_point(
                 hull, wave, froude, gravity=ConstantsSection.gravity, density=density, viscosity=viscosity,

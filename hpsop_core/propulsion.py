@@ -13,7 +13,7 @@ from hpsop_core.case_sections import PropellerSection
 from hpsop_core.design import DesignVariables
 from hpsop_core.geometry.propeller import Propeller, RadialTable, load_propeller, propeller_family
 from hpsop_core.geometry.propeller_input import radial_table_from_csv
-from hpsop_core.hydro import blade_panels, lifting_line
+from hpsop_core.hydro import lifting_line
 from hpsop_core.hydro.open_water import OpenWater, SectionDrag
 from hpsop_core.hydro.operating_point import PropellerCurve, chebyshev_nodes
 from hpsop_core.typing_aliases import Array
@@ -100,4 +100,7 @@ def solve_open_water(
     advance = np.asarray(advance_coefficients, dtype=float)
     if level == 1:
         return lifting_line.solve(propeller, advance, drag)
+    # Loaded when it is needed: its compiled kernels take a second to load, and level 1 must answer at once.
+    from hpsop_core.hydro import blade_panels
+
     return blade_panels.solve(propeller, advance, drag).open_water

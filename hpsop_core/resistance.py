@@ -11,7 +11,7 @@ from hpsop_core.case_sections import HullSection
 from hpsop_core.design import DesignVariables
 from hpsop_core.geometry.hull import Hull, ParentHull, load_parent_hull
 from hpsop_core.geometry.hull_input import parent_hull_from_offsets, parent_hull_from_stl
-from hpsop_core.hydro import michell, rankine
+from hpsop_core.hydro import michell
 from hpsop_core.hydro.friction import ittc57_coefficient
 
 
@@ -130,6 +130,9 @@ def solve_waves(hull: Hull, level: int, froude_numbers: Sequence[float]) -> tupl
             table.x, table.z, table.y, hull.length, hull.hydrostatics.wetted_surface, froude_numbers
         )
         return tuple(WaveAnswer(float(value)) for value in coefficients)
+    # Loaded when it is needed: its compiled kernels take a second to load, and level 1 must answer at once.
+    from hpsop_core.hydro import rankine
+
     result = rankine.solve(hull, froude_numbers)
     return tuple(
         WaveAnswer(point.wave_coefficient, point.wave_coefficient_pressure, point.sinkage, point.trim)
