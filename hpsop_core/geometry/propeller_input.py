@@ -25,7 +25,7 @@ _LIMITS = {
 _MINIMUM_ROWS = 5
 
 
-def radial_table_from_csv(path: str | Path, name: str | None = None, blade_count: int = 3) -> RadialTable:
+def radial_table_from_csv(path: str | Path, blade_count: int = 3, name: str | None = None) -> RadialTable:
     """Read a radial table from a CSV file.
 
     The file has a line of column names ``r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c`` (any order), then one row a radius from
@@ -33,8 +33,8 @@ def radial_table_from_csv(path: str | Path, name: str | None = None, blade_count
 
     Args:
         path: the file.
-        name: the table's name; the file's stem unless given.
         blade_count: the number of blades that the table was drawn for.
+        name: the table's name; the file's stem unless given.
 
     Raises:
         InputError: one line that names the file, the line and the remedy.
