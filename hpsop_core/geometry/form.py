@@ -9,11 +9,12 @@ Departs from Lackenby (1950), whose linear shift of the prismatic curve folds th
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
+from scipy.interpolate import CubicSpline
 
+from hpsop_core.errors import SolverFailure
 from hpsop_core.typing_aliases import Array
 
 RAMP = 0.2
@@ -33,21 +34,6 @@ class ShiftFrame:
     length: float
 
 
-def _ramped_step(s: Array) -> Array:
-    """Trapezoid with cosine ramps on [0, 1], height 1, area 1 - RAMP."""
-    edge = np.clip(np.minimum(s, 1.0 - s), 0.0, RAMP)
-    return np.asarray(0.5 - 0.5 * np.cos(np.pi / RAMP * edge))
-
-
-def _ramped_step_integral(s: Array) -> Array:
-    """Integral of `_ramped_step` from 0 to s."""
-    s = np.clip(s, 0.0, 1.0)
-    mirrored = np.minimum(s, 1.0 - s)
-    edge = np.minimum(mirrored, RAMP)
-    half = 0.5 * (edge - RAMP / np.pi * np.sin(np.pi / RAMP * edge)) + np.maximum(mirrored - RAMP, 0.0)
-    return np.asarray(np.where(s > 0.5, 1.0 - RAMP - half, half))
-
-
 def _shoulder(amplitude: float, length: float) -> float:
     """Sliding shoulder p(a), between .17 (stretched) and .5 (shrunk)."""
     width = SHOULDER_WIDTH * length
@@ -55,21 +41,18 @@ def _shoulder(amplitude: float, length: float) -> float:
 
 
 def _lobe(t: Array, shoulder: float) -> tuple[Array, Array]:
-    """phi and phi' at t (0 outside [0, 1])."""
-    rise, fall = t / shoulder, (t - shoulder) / (1.0 - shoulder)
+    """phi and phi' at t within [0, 1]: up to one at the shoulder, down to zero at the end."""
+    rising = t < shoulder
+    span = np.where(rising, shoulder, 1.0 - shoulder)
+    s = np.where(rising, t, t - shoulder) / span
+    nearest = np.minimum(s, 1.0 - s)
+    angle = np.pi / RAMP * np.minimum(nearest, RAMP)
+    step = 0.5 - 0.5 * np.cos(angle)
+    # The integral of the trapezoid from its nearer end, by its symmetry about the middle.
+    part = 0.5 * RAMP / np.pi * (angle - np.sin(angle)) + np.maximum(nearest - RAMP, 0.0)
     area = 1.0 - RAMP
-    inside = (t > 0.0) & (t < 1.0)
-    value = np.where(inside, (_ramped_step_integral(rise) - _ramped_step_integral(fall)) / area, 0.0)
-    slope = np.where(
-        inside,
-        (
-            np.where(rise < 1.0, _ramped_step(rise), 0.0) / shoulder
-            - np.where(fall > 0.0, _ramped_step(fall), 0.0) / (1.0 - shoulder)
-        )
-        / area,
-        0.0,
-    )
-    return value, slope
+    rise = np.where(s > 0.5, area - part, part) / area
+    return np.where(rising, rise, 1.0 - rise), np.where(rising, step, -step) / (area * span)
 
 
 @dataclass(frozen=True)
@@ -84,13 +67,18 @@ class LongitudinalShift:
         """Shifted positions and dx'/dx at the parent's positions x, same shape."""
         frame = self.frame
         x = np.asarray(x, dtype=np.float64)
-        if self.forward_amplitude == 0.0 and self.aft_amplitude == 0.0:
-            return x, np.ones_like(x)
-        forward, aft = frame.forward - frame.middle, frame.middle - frame.aft
-        phi_f, slope_f = _lobe((x - frame.middle) / forward, _shoulder(self.forward_amplitude, frame.length))
-        phi_a, slope_a = _lobe((frame.middle - x) / aft, _shoulder(self.aft_amplitude, frame.length))
-        moved = x + self.forward_amplitude * phi_f - self.aft_amplitude * phi_a
-        stretch = 1.0 + self.forward_amplitude / forward * slope_f + self.aft_amplitude / aft * slope_a
+        moved, stretch = x.copy(), np.ones_like(x)
+        for amplitude, span, direction in (
+            (self.forward_amplitude, frame.forward - frame.middle, 1.0),
+            (self.aft_amplitude, frame.middle - frame.aft, -1.0),
+        ):
+            if amplitude == 0.0:
+                continue
+            t = direction * (x - frame.middle) / span
+            inside = (t > 0.0) & (t < 1.0)
+            value, slope = _lobe(t[inside], _shoulder(amplitude, frame.length))
+            moved[inside] += direction * amplitude * value
+            stretch[inside] += amplitude / span * slope
         return moved, stretch
 
     def least_stretch(self) -> float:
@@ -106,40 +94,9 @@ class LongitudinalShift:
         return least
 
 
-Measure = Callable[[LongitudinalShift], tuple[float, float]]
-
-
-def _solved(frame: ShiftFrame, measure: Measure, volume: float, centre: float, start: tuple[float, float]) -> (
-    LongitudinalShift | None
-):
-    """The shift that reaches (volume, centre of buoyancy), or None where Newton's method leaves the valid range."""
-    length = frame.length
-    a = np.array(start)
-    target = np.array([volume, centre])
-    scale = np.array([volume, length])
-    step = 1e-4 * length
-    limit = 0.25 * length
-    for _ in range(25):
-        shift = LongitudinalShift(frame, float(a[0]), float(a[1]))
-        residual = (np.array(measure(shift)) - target) / scale
-        if float(np.max(np.abs(residual))) < 1e-12:
-            return shift
-        jacobian = np.zeros((2, 2))
-        for k in range(2):
-            moved = a.copy()
-            moved[k] += step
-            ahead = np.array(measure(LongitudinalShift(frame, float(moved[0]), float(moved[1]))))
-            moved[k] -= 2.0 * step
-            behind = np.array(measure(LongitudinalShift(frame, float(moved[0]), float(moved[1]))))
-            jacobian[:, k] = (ahead - behind) / (2.0 * step) / scale
-        if abs(np.linalg.det(jacobian)) < 1e-14:
-            return None
-        change = -np.linalg.solve(jacobian, residual)
-        size = float(np.max(np.abs(change)))
-        a = a + change * min(1.0, 0.06 * length / max(size, 1e-12))
-        if float(np.max(np.abs(a))) > limit:
-            return None
-    return None
+TABLE_POINTS = 97
+# Amplitudes end just inside the least stretch, so that a clipped form still passes the check.
+STRETCH_MARGIN = 1e-6
 
 
 @dataclass(frozen=True)
@@ -150,40 +107,163 @@ class FormSolution:
     clipped: bool
 
 
-def solve_form(frame: ShiftFrame, measure: Measure, volume: float, centre: float) -> FormSolution:
-    """The shift for a volume and a centre of buoyancy in the parent's frame, clipped to what the form carries.
+class _HalfBody:
+    """Volume and moment of the sections of one half body as functions of its amplitude."""
 
-    Where the asked pair would compress sections below dx'/dx = 0.3, the volume is taken back towards the parent's at
-    the asked centre; where the centre alone is too far, both are taken back along a straight line.
+    def __init__(self, frame: ShiftFrame, forward: bool, x: Array, slices: Array) -> None:
+        self._frame, self._forward, self._x, self._slices = frame, forward, x, slices
+        self.low, self.high = self._limit(-1.0), self._limit(1.0)
+        grid = np.linspace(self.low, self.high, TABLE_POINTS)
+        table = CubicSpline(grid, np.array([self.exact(float(a)) for a in grid]))
+        self._spline, self._slope = table, table.derivative()
+
+    def shift(self, amplitude: float) -> LongitudinalShift:
+        pair = (amplitude, 0.0) if self._forward else (0.0, amplitude)
+        return LongitudinalShift(self._frame, *pair)
+
+    def exact(self, amplitude: float) -> Array:
+        """Volume and moment about AP, (2,)."""
+        moved, stretch = self.shift(amplitude).evaluate(self._x)
+        slices = self._slices * stretch
+        return np.array([np.sum(slices), slices @ moved])
+
+    def table(self, amplitude: float) -> tuple[Array, Array]:
+        """Interpolated volume and moment with their derivatives, (2,) each."""
+        return np.asarray(self._spline(amplitude)), np.asarray(self._slope(amplitude))
+
+    def _limit(self, sign: float) -> float:
+        low, high = 0.0, self._frame.length
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            if self.shift(sign * middle).least_stretch() > LEAST_STRETCH + STRETCH_MARGIN:
+                low = middle
+            else:
+                high = middle
+        return sign * low
+
+
+class FormSolver:
+    """Finds shifts of one parent: volume and centre of buoyancy in, amplitudes out.
+
+    Both half bodies' volumes and moments are tabulated once over their amplitudes; a design is then a 2x2 Newton on
+    splines, polished on the exact integrals to rounding.
 
     Args:
         frame: where sections may move.
-        measure: volume (m3) and centre of buoyancy (m) of a shift.
-        volume, centre: asked values in the parent's frame.
+        x: positions of sections, m.
+        slices: their volumes (sectional area times dx weight), m3.
     """
-    identity = LongitudinalShift(frame, 0.0, 0.0)
-    own_volume, own_centre = measure(identity)
-    if abs(volume / own_volume - 1.0) < 1e-13 and abs(centre - own_centre) < 1e-13 * frame.length:
-        return FormSolution(identity, False)
 
-    def attempt(v: float, c: float, near: LongitudinalShift) -> LongitudinalShift | None:
-        found = _solved(frame, measure, v, c, (near.forward_amplitude, near.aft_amplitude))
-        return found if found is not None and found.least_stretch() > LEAST_STRETCH else None
-
-    direct = attempt(volume, centre, identity)
-    if direct is not None:
-        return FormSolution(direct, False)
-    base = attempt(own_volume, centre, identity)
-    start_centre = centre if base is not None else own_centre
-    best = base if base is not None else identity
-    low, high = 0.0, 1.0
-    for _ in range(30):
-        part = 0.5 * (low + high)
-        found = attempt(
-            own_volume + part * (volume - own_volume), start_centre + part * (centre - start_centre), best
+    def __init__(self, frame: ShiftFrame, x: Array, slices: Array) -> None:
+        self.frame = frame
+        forward = (x > frame.middle) & (x < frame.forward)
+        aft = (x <= frame.middle) & (x > frame.aft)
+        rest = ~(forward | aft)
+        self._fixed = np.array([np.sum(slices[rest]), slices[rest] @ x[rest]])
+        self._bodies = (
+            _HalfBody(frame, True, x[forward], slices[forward]),
+            _HalfBody(frame, False, x[aft], slices[aft]),
         )
+        own = self._fixed + self._bodies[0].exact(0.0) + self._bodies[1].exact(0.0)
+        self.volume, self.centre = float(own[0]), float(own[1] / own[0])
+
+    def _newton(self, volume: float, centre: float, start: Array) -> Array | None:
+        """Amplitudes on the splines, or None where no pair within the limits reaches the target."""
+        target = np.array([volume, volume * centre])
+        scale = np.array([volume, volume * self.frame.length])
+        low = np.array([body.low for body in self._bodies])
+        high = np.array([body.high for body in self._bodies])
+        a = start
+        for _ in range(40):
+            values = [body.table(float(amplitude)) for body, amplitude in zip(self._bodies, a, strict=True)]
+            residual = (self._fixed + values[0][0] + values[1][0] - target) / scale
+            if float(np.max(np.abs(residual))) < 1e-10:
+                return a
+            jacobian = np.column_stack([values[0][1], values[1][1]]) / scale[:, None]
+            if abs(float(np.linalg.det(jacobian))) < 1e-18:
+                return None
+            moved = np.clip(a - np.linalg.solve(jacobian, residual), low, high)
+            if float(np.max(np.abs(moved - a))) < 1e-12 * self.frame.length:
+                return None
+            a = moved
+        return None
+
+    def _polished(self, volume: float, centre: float, a: Array) -> LongitudinalShift:
+        target = np.array([volume, volume * centre])
+        for _ in range(4):
+            exact = self._fixed + sum(b.exact(float(v)) for b, v in zip(self._bodies, a, strict=True))
+            residual = exact - target
+            if abs(residual[0]) < 1e-13 * volume and abs(residual[1]) < 1e-13 * volume * self.frame.length:
+                break
+            slopes = [body.table(float(v))[1] for body, v in zip(self._bodies, a, strict=True)]
+            a = a - np.linalg.solve(np.column_stack(slopes), residual)
+        return LongitudinalShift(self.frame, float(a[0]), float(a[1]))
+
+    def _at_limit(self, volume: float, centre: float) -> Array:
+        """Amplitudes where, at the centre, the volume is nearest to the asked one: one half body is at its limit."""
+        sign = 1.0 if volume > self.volume else -1.0
+        best: tuple[float, Array] | None = None
+        for held, other in ((0, 1), (1, 0)):
+            body, free = self._bodies[held], self._bodies[other]
+            limit = body.high if sign > 0.0 else body.low
+            base = self._fixed + body.table(limit)[0]
+
+            def off(amplitude: float, base: Array = base, free: _HalfBody = free) -> float:
+                total = base + free.table(amplitude)[0]
+                return float(total[1] / total[0]) - centre
+
+            low, high = free.low, free.high
+            at_low, at_high = off(low), off(high)
+            if at_low * at_high > 0.0:
+                continue
+            for _ in range(60):
+                middle = 0.5 * (low + high)
+                if off(middle) * at_low > 0.0:
+                    low = middle
+                else:
+                    high = middle
+            reached = float((base + free.table(low)[0])[0])
+            pair = np.array([limit, low]) if held == 0 else np.array([low, limit])
+            # Along the curve of this centre both limits may be met; the first one counts.
+            if best is None or sign * reached < sign * best[0]:
+                best = (reached, pair)
+        return best[1] if best is not None else np.zeros(2)
+
+    def solve(self, volume: float, centre: float) -> FormSolution:
+        """The shift for a volume and a centre of buoyancy in the parent's frame, clipped to what the form carries.
+
+        Where the asked pair would compress sections to dx'/dx = 0.3, the volume is taken back towards the parent's at
+        the asked centre; where the centre alone is too far, it is taken back first.
+
+        Args:
+            volume, centre: m3 and m from AP, in the parent's frame.
+        """
+        identity = LongitudinalShift(self.frame, 0.0, 0.0)
+        if abs(volume / self.volume - 1.0) < 1e-13 and abs(centre - self.centre) < 1e-13 * self.frame.length:
+            return FormSolution(identity, False)
+        zero = np.zeros(2)
+        found = self._newton(volume, centre, zero)
         if found is not None:
-            best, low = found, part
-        else:
-            high = part
-    return FormSolution(best, True)
+            return FormSolution(self._checked(self._polished(volume, centre, found)), False)
+        part = 1.0
+        if self._newton(self.volume, centre, zero) is None:
+            low, high = 0.0, 1.0
+            for _ in range(40):
+                part = 0.5 * (low + high)
+                reachable = self._newton(self.volume, self.centre + part * (centre - self.centre), zero) is not None
+                low, high = (part, high) if reachable else (low, part)
+            part = low
+        pair = self._at_limit(volume, self.centre + part * (centre - self.centre))
+        return FormSolution(self._checked(LongitudinalShift(self.frame, float(pair[0]), float(pair[1]))), True)
+
+    @staticmethod
+    def _checked(shift: LongitudinalShift) -> LongitudinalShift:
+        """The same shift; a folded form must never leave this module.
+
+        Raises:
+            SolverFailure: dx'/dx is not above the least stretch.
+        """
+        least = shift.least_stretch()
+        if not least > LEAST_STRETCH:
+            raise SolverFailure("form", f"sections compressed to dx'/dx = {least:.3f}, not above {LEAST_STRETCH}")
+        return shift

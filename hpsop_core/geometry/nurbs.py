@@ -100,7 +100,8 @@ class NurbsSurface:
 
     @property
     def _is_polynomial(self) -> bool:
-        return bool(np.all(self.weights == self.weights.flat[0]))
+        first = float(self.weights.flat[0])
+        return bool(np.all(np.abs(self.weights - first) <= 1e-12 * first))
 
     def _basis(self, u: Array, v: Array, order_u: int, order_v: int) -> tuple[Array, Array]:
         return (
@@ -143,6 +144,24 @@ class NurbsSurface:
             numerator, slope = self._homogeneous(u, v, *order)
             tangents.append((numerator - slope[..., None] * points) / weight[..., None])
         return points, tangents[0], tangents[1]
+
+    def with_knots_u(self, knots: Array) -> NurbsSurface:
+        """The same surface with further knots in u (for polynomial and rational surfaces alike).
+
+        The finer spline space contains the coarser one, so collocation at the Greville points is exact.
+        """
+        degree = self.degree_u
+        finer = np.sort(np.concatenate([self.knots_u, knots]))
+        count = len(finer) - degree - 1
+        greville = np.array([np.mean(finer[k + 1 : k + degree + 1]) for k in range(count)])
+        insert = np.linalg.solve(
+            basis_matrix(finer, degree, greville), basis_matrix(self.knots_u, degree, greville)
+        )
+        weights = insert @ self.weights
+        weighted = np.einsum("iu,uvk->ivk", insert, self.control_points * self.weights[..., None])
+        return NurbsSurface(
+            degree, self.degree_v, finer, self.knots_v, weighted / weights[..., None], weights
+        )
 
     def to_dict(self) -> dict[str, Any]:
         """Plain lists for JSON; equal weights are stored as one number."""
