@@ -1,0 +1,155 @@
+"""What stands in a run file, as values: designs, generations, and how they are written as JSON."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+from collections.abc import Mapping
+from dataclasses import dataclass
+from typing import Any
+
+from hpsop_core.design import DesignVariables
+from hpsop_core.errors import InputError
+from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.optimization.problem import Outcome
+from hpsop_core.optimization.two_level import Generation
+
+
+@dataclass(frozen=True)
+class DesignRecord:
+    """One evaluated design of a run.
+
+    Attributes:
+        id: its number in the run.
+        origin: "initial", "sample", "seed", "offspring", "handover", "reseed" or "hand".
+        generation: that asked for it first; 0 for the initial design, and for designs made by hand.
+        evaluation: everything about it.
+    """
+
+    id: int
+    origin: str
+    generation: int
+    evaluation: Evaluation
+
+    def summary(self) -> dict[str, Any]:
+        """The short form of ``hpsop show --front``."""
+        return {
+            "id": self.id,
+            "objectives": dict(self.evaluation.objectives),
+            "variables": self.evaluation.variables.as_dict(),
+            "feasible": self.evaluation.feasible,
+        }
+
+    def as_dict(self) -> dict[str, Any]:
+        """The evaluation's JSON with the record's own keys before it."""
+        head = {"id": self.id, "origin": self.origin, "generation": self.generation}
+        return {**head, **self.evaluation.as_dict()}
+
+
+@dataclass(frozen=True)
+class ArchivePoint:
+    """A design as the chart of all designs needs it.
+
+    Attributes:
+        id, level, origin, generation: as in ``DesignRecord``.
+        objectives: (f1, f2), or None if it failed.
+        feasible: every constraint kept.
+    """
+
+    id: int
+    level: int
+    origin: str
+    generation: int
+    objectives: tuple[float, float] | None
+    feasible: bool
+
+
+@dataclass(frozen=True)
+class Failure:
+    """A failed evaluation: what was asked, where it failed, and why."""
+
+    id: int
+    level: int
+    generation: int
+    stage: str
+    reason: str
+    variables: DesignVariables
+    elapsed: float
+
+
+@dataclass(frozen=True)
+class GenerationRecord:
+    """A generation with its times.
+
+    Attributes:
+        generation: what it came to.
+        elapsed: wall time in s, pauses not counted.
+        finished_at: seconds since 1970.
+    """
+
+    generation: Generation
+    elapsed: float
+    finished_at: float
+
+
+def json_text(value: Any) -> str:
+    """JSON on one line with every digit of a float; NaN and infinity are refused.
+
+    Raises:
+        ValueError: a number is not finite.
+    """
+    return json.dumps(value, allow_nan=False, separators=(",", ":"), default=_plain)
+
+
+def _plain(value: Any) -> Any:
+    # numpy's scalars and arrays.
+    if hasattr(value, "tolist"):
+        return value.tolist()
+    raise TypeError(f"{type(value).__name__} has no JSON form")
+
+
+def variables_text(variables: DesignVariables) -> str:
+    """The exact variables as the text that names a design in the file."""
+    return json_text(list(variables.key()))
+
+
+def generation_text(generation: Generation) -> str:
+    """A generation as JSON."""
+    return json_text(dataclasses.asdict(generation))
+
+
+def generation_from_text(text: str) -> Generation:
+    """The generation that ``generation_text`` wrote."""
+    data = json.loads(text)
+    return Generation(**{key: tuple(value) if isinstance(value, list) else value for key, value in data.items()})
+
+
+def design_from_row(row: tuple[int, str, int, str]) -> DesignRecord:
+    """A record from (id, origin, generation, result)."""
+    return DesignRecord(row[0], row[1], row[2], Evaluation.from_dict(json.loads(row[3])))
+
+
+def outcome_from_row(row: tuple[int, str, int, float | None, float | None, str]) -> Outcome:
+    """An outcome from (id, status, feasible, first_objective, second_objective, constraints)."""
+    number, status, feasible, first, second, constraints = row
+    data: Mapping[str, Any] = {
+        "status": status,
+        "feasible": bool(feasible),
+        "objectives": {"f1": first, "f2": second},
+        "constraints": json.loads(constraints),
+    }
+    return Outcome.from_json(number, data)
+
+
+def identifier(word: str) -> int | str:
+    """A design's name as people write it: an integer id, "initial", "compromise" or "knee".
+
+    Raises:
+        InputError: it is none of these.
+    """
+    if word in ("initial", "compromise", "knee"):
+        return word
+    try:
+        return int(word)
+    except ValueError:
+        raise InputError(f"--design {word}: give a design's number, initial, compromise or knee") from None
