@@ -7,7 +7,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hpsop_core.typing_aliases import Array
+from hpsop_core.typing_aliases import Array, IntArray
 
 
 def wrench_velocities(
@@ -49,44 +49,41 @@ def wrench_velocities(
     return np.asarray(axial), np.asarray(tangential)
 
 
-def polyline_normal_velocity(polylines: Array, control_points: Array, normals: Array) -> Array:
+def polyline_normal_velocity(points: Array, first: IntArray, control_points: Array, normals: Array) -> Array:
     """Normal velocity of vortex polylines at control points, by the Biot-Savart law for straight segments.
 
     Args:
-        polylines: (..., n, 3), circulation 1 in the direction of the points.
+        points: the polylines one after the other, (n, 3); circulation 1 in the direction of the points.
+        first: index of each polyline's first point, ascending from 0, (p,).
         control_points: (m, 3).
         normals: (m, 3).
 
     Returns:
-        (..., m): the velocity at each control point along its normal, summed over the n - 1 segments.
+        (p, m): the velocity at each control point along its normal, summed over each polyline's segments.
     """
-    shape = polylines.shape
-    flat = np.ascontiguousarray(polylines).reshape(-1, 3)
-    count = control_points.shape[0]
     # n . ((P-A) x (P-B)) = n . (A x B) + (B-A) . (P x n): matrix products over all segments instead of a cross product
     # for each pair. The segments that join one polyline to the next are computed too, and dropped.
-    start, end = flat[:-1], flat[1:]
+    start, end = points[:-1], points[1:]
     element = end - start
-    triple = (
-        np.concatenate([_cross(start, end), element], axis=1)
-        @ np.concatenate([normals, _cross(control_points, normals)], axis=1).T
-    )
-    square = flat @ (-2.0 * control_points.T)
-    square += np.sum(flat * flat, axis=1)[:, None]
+    moment = np.concatenate([_cross(start, end), element], axis=1)
+    velocity = np.zeros((points.shape[0], control_points.shape[0]))
+    triple = velocity[:-1]
+    np.matmul(moment, np.concatenate([normals, _cross(control_points, normals)], axis=1).T, out=triple)
+    square = points @ (-2.0 * control_points.T)
+    square += np.sum(points * points, axis=1)[:, None]
     square += np.sum(control_points * control_points, axis=1)
     distance = np.sqrt(np.maximum(square, 0.0))
-    first, second = distance[:-1], distance[1:]
+    near, far = distance[:-1], distance[1:]
     denominator = square[:-1] + square[1:]
     denominator -= np.sum(element * element, axis=1)[:, None]
     denominator *= 0.5
-    product = first * second
+    product = near * far
     denominator += product
     denominator *= product
-    triple *= first + second
+    triple *= near + far
     triple /= denominator
-    padded = np.concatenate([triple, np.zeros((1, count))]).reshape(-1, shape[-2], count)
-    velocity = np.sum(padded[:, :-1], axis=1) / (4.0 * np.pi)
-    return np.asarray(velocity.reshape(*shape[:-2], count))
+    velocity[first[1:] - 1] = 0.0
+    return np.asarray(np.add.reduceat(velocity, first, axis=0) / (4.0 * np.pi))
 
 
 def _cross(a: Array, b: Array) -> Array:

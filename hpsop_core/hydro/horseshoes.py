@@ -10,15 +10,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from hpsop_core.geometry.propeller import Propeller
-from hpsop_core.geometry.propeller_surface import cylinder_points, rotate_blade, to_cartesian
+from hpsop_core.geometry.propeller_surface import cylinder_points, to_cartesian
 from hpsop_core.geometry.radial_table import BladeSections
 from hpsop_core.hydro.helical_vortices import helix_tail_velocity, polyline_normal_velocity, wrench_velocities
-from hpsop_core.typing_aliases import Array
+from hpsop_core.typing_aliases import Array, IntArray
 
-_CHORD_SEGMENTS = 8
-_WAKE_SEGMENTS = 32
-_FIRST_WAKE_STEP = 0.07
-_WAKE_STEP_GROWTH = 1.10
+_CHORD_SEGMENTS = 12
+_WAKE_SEGMENTS = 40
+_FIRST_WAKE_STEP = 0.05
+_WAKE_STEP_GROWTH = 1.08
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,40 +109,95 @@ def normal_influence(grid: HorseshoeGrid, wake_advance: Array) -> Array:
     normals = np.stack(
         [axial, tangential * np.cos(grid.control_theta), -tangential * np.sin(grid.control_theta)], axis=-1
     )
-    radius = np.concatenate([grid.edges, grid.image_edges])
-    fixed = _legs(grid, radius, grid.leg_x, grid.leg_theta)
-    angles = _FIRST_WAKE_STEP * (_WAKE_STEP_GROWTH ** np.arange(_WAKE_SEGMENTS + 1) - 1.0) / (_WAKE_STEP_GROWTH - 1.0)
-    wake_x = grid.leg_x[:, -1:] + wake_advance[:, None, None] * angles
-    wake_theta = grid.leg_theta[:, -1:] - angles
-    wake = _legs(grid, radius, wake_x, np.broadcast_to(wake_theta, wake_x.shape))
-    legs = polyline_normal_velocity(wake, control, normals).sum(axis=-3)
-    legs += polyline_normal_velocity(fixed, control, normals).sum(axis=-3)
-    distance = np.concatenate([wake_x[..., -1], wake_x[..., -1]], axis=-1)[..., None] - grid.control_x
-    tail_axial, tail_tangential = helix_tail_velocity(
-        grid.radii, radius[:, None], distance, wake_advance[:, None, None], grid.blade_count
-    )
-    legs += tail_axial * axial + tail_tangential * tangential
-    count = grid.edges.size
-    legs = legs[:, :count] - legs[:, count:]
-    return np.swapaxes(legs[:, 1:] - legs[:, :-1] + _bound(grid, radius, control, normals), -1, -2)
+    influence = np.zeros((wake_advance.size, grid.radii.size, grid.radii.size))
+    influence += _on_blade(grid, control, normals)
+    wakes = _Wakes.make(grid)
+    for node, advance in enumerate(wake_advance):
+        legs = wakes.normal_velocity(grid, float(advance), control, normals)
+        tail_axial, tail_tangential = wakes.tail(grid, float(advance))
+        legs += tail_axial * axial + tail_tangential * tangential
+        influence[node] += (legs[1:] - legs[:-1]).T
+    return influence
 
 
-def _legs(grid: HorseshoeGrid, radius: Array, x: Array, theta: Array) -> Array:
-    """Legs and their images on all blades as polylines, (..., Z, 2 (M + 1), n, 3)."""
-    turn = 2.0 * np.pi * np.arange(grid.blade_count) / grid.blade_count
-    x = np.concatenate([x, x], axis=-2)[..., None, :, :]
-    theta = np.concatenate([theta, theta], axis=-2)[..., None, :, :] + turn[:, None, None]
-    return to_cartesian(x, radius[:, None], theta)
+@dataclass(frozen=True, eq=False)
+class _Wakes:
+    """Points of all wake legs and their images on the unit wake: x = x0 + advance * angle."""
+
+    start_x: Array
+    angle: Array
+    radius: Array
+    theta: Array
+    first: IntArray
+    last_angle: float
+
+    @staticmethod
+    def make(grid: HorseshoeGrid) -> _Wakes:
+        growth = _WAKE_STEP_GROWTH
+        angles = _FIRST_WAKE_STEP * (growth ** np.arange(_WAKE_SEGMENTS + 1) - 1.0) / (growth - 1.0)
+        blades = np.arange(grid.blade_count)
+        # Far legs need fewer points: every second on the other blades, every fourth on the images in the hub.
+        groups = ((grid.edges, blades[:1], 1), (grid.edges, blades[1:], 2), (grid.image_edges, blades, 4))
+        start_x, angle, radius, theta, lengths = [], [], [], [], []
+        for radii, turned, stride in groups:
+            some = angles[::stride]
+            shape = (turned.size, radii.size, some.size)
+            turn = 2.0 * np.pi * turned / grid.blade_count
+            # A polygon encloses less than its circle; with its corners moved out it induces far away what the helix
+            # does.
+            step = np.concatenate([[some[1] - some[0]], 0.5 * (some[2:] - some[:-2]), [some[-1] - some[-2]]])
+            outward = np.sqrt(step / np.sin(np.minimum(step, 1.5)))
+            start_x.append(np.broadcast_to(grid.leg_x[:, -1:], shape).ravel())
+            angle.append(np.broadcast_to(some, shape).ravel())
+            radius.append(np.broadcast_to(radii[:, None] * outward, shape).ravel())
+            theta.append((grid.leg_theta[:, -1:] + turn[:, None, None] - some).ravel())
+            lengths += [some.size] * (turned.size * radii.size)
+        first = np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64)
+        return _Wakes(
+            start_x=np.concatenate(start_x),
+            angle=np.concatenate(angle),
+            radius=np.concatenate(radius),
+            theta=np.concatenate(theta),
+            first=first,
+            last_angle=float(angles[-1]),
+        )
+
+    def normal_velocity(self, grid: HorseshoeGrid, advance: float, control: Array, normals: Array) -> Array:
+        """Normal velocity of the wake legs of all blades less their images, (M + 1, M)."""
+        points = to_cartesian(self.start_x + advance * self.angle, self.radius, self.theta)
+        velocity = polyline_normal_velocity(points, self.first, control, normals)
+        legs = velocity.reshape(2, grid.blade_count, grid.edges.size, -1).sum(axis=1)
+        return np.asarray(legs[0] - legs[1])
+
+    def tail(self, grid: HorseshoeGrid, advance: float) -> tuple[Array, Array]:
+        """Axial and tangential velocity of what follows the last point of legs less images, two (M + 1, M)."""
+        distance = grid.leg_x[:, -1:] + advance * self.last_angle - grid.control_x
+        step = np.array(advance)
+        real = helix_tail_velocity(grid.radii, grid.edges[:, None], distance, step, grid.blade_count)
+        image = helix_tail_velocity(grid.radii, grid.image_edges[:, None], distance, step, grid.blade_count)
+        return real[0] - image[0], real[1] - image[1]
 
 
-def _bound(grid: HorseshoeGrid, radius: Array, control: Array, normals: Array) -> Array:
-    """Bound vortices and their images on all blades, (M, M): horseshoe, then control point."""
-    count = grid.edges.size
-    start = to_cartesian(grid.leg_x[:, 0], grid.edges, grid.leg_theta[:, 0])
-    image = to_cartesian(grid.leg_x[:, 0], radius[count:], grid.leg_theta[:, 0])
-    segments = np.stack([np.stack([start[:-1], start[1:]], axis=1), np.stack([image[1:], image[:-1]], axis=1)])
-    turned = np.stack([rotate_blade(segments, blade, grid.blade_count) for blade in range(grid.blade_count)])
-    return np.asarray(polyline_normal_velocity(turned, control, normals).sum(axis=(0, 1)))
+def _on_blade(grid: HorseshoeGrid, control: Array, normals: Array) -> Array:
+    """What does not depend on the wake: bound vortices and legs along the chords, with images; (M, M) as influence."""
+    blades = grid.blade_count
+    turn = 2.0 * np.pi * np.arange(blades)[:, None, None] / blades
+    edges = np.stack([grid.edges, grid.image_edges])[:, None, :, None]
+    theta = grid.leg_theta + turn
+    # (2, Z, M + 1, n, 3): real and image
+    legs = to_cartesian(grid.leg_x, edges, theta)
+    count = legs.shape[-2]
+    first = np.arange(2 * blades * grid.edges.size, dtype=np.int64) * count
+    along = polyline_normal_velocity(legs.reshape(-1, 3), first, control, normals)
+    along = along.reshape(2, blades, grid.edges.size, -1).sum(axis=1)
+    along = along[0] - along[1]
+    # Bound vortices are one polyline of single segments: from edge to edge outwards, the image from the inside out too.
+    start = legs[:, :, :, 0]
+    outward = np.stack([start[:, :, :-1], start[:, :, 1:]], axis=3)
+    first = np.arange(2 * blades * grid.radii.size, dtype=np.int64) * 2
+    bound = polyline_normal_velocity(outward.reshape(-1, 3), first, control, normals)
+    bound = bound.reshape(2, blades, grid.radii.size, -1).sum(axis=1)
+    return np.asarray((along[1:] - along[:-1] + bound[0] - bound[1]).T)
 
 
 def induced_at_lifting_line(grid: HorseshoeGrid, wake_advance: Array) -> tuple[Array, Array]:

@@ -28,7 +28,7 @@ from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.typing_aliases import Array
 
 SOLVER = "lifting line 1.0"
-CAMBER_EFFECTIVENESS = 0.90
+CAMBER_EFFECTIVENESS = 0.907
 """The one lift factor, fitted on the open-water test of P4119 alone (docs/theory-lifting-line.md)."""
 
 _STAGE = "lifting_line"
@@ -51,7 +51,7 @@ class LiftingLineSettings:
 
     strips: int = 10
     camber_effectiveness: float = CAMBER_EFFECTIVENESS
-    wake_nodes: int = 9
+    wake_nodes: int = 8
     lowest_wake_pitch: float = 0.42
     highest_wake_pitch: float = 1.65
 
