@@ -121,7 +121,8 @@ def generation_text(generation: Generation) -> str:
 def generation_from_text(text: str) -> Generation:
     """The generation that ``generation_text`` wrote."""
     data = json.loads(text)
-    return Generation(**{key: tuple(value) if isinstance(value, list) else value for key, value in data.items()})
+    values: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in data.items()}
+    return Generation(**values)
 
 
 def design_from_row(row: tuple[int, str, int, str]) -> DesignRecord:

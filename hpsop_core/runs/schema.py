@@ -134,7 +134,7 @@ def schema_version(connection: sqlite3.Connection, path: Path) -> int:
         raise InputError(f"{path}: is a database of another program; choose another file")
     if version > SCHEMA_VERSION:
         raise InputError(
-            f"{path}: was written by a newer hpsop (schema {version}, this one knows up to {SCHEMA_VERSION}); update hpsop"
+            f"{path}: was written by a newer hpsop (schema {version}, this one knows {SCHEMA_VERSION}); update hpsop"
         )
     if any(step not in MIGRATIONS for step in range(version, SCHEMA_VERSION)):
         raise InputError(f"{path}: has schema {version}, which this hpsop no longer reads; open it with an older hpsop")

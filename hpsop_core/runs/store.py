@@ -15,7 +15,6 @@ from typing import Any
 from hpsop_core.case import Case, case_from_toml
 from hpsop_core.design import DesignVariables
 from hpsop_core.errors import HpsopError, InputError
-from hpsop_core.evaluation import Reference
 from hpsop_core.evaluation_result import Evaluation
 from hpsop_core.optimization.problem import Candidate, Outcome
 from hpsop_core.optimization.two_level import Generation
@@ -37,7 +36,7 @@ from hpsop_core.runs.schema import (
 )
 
 
-class StoreUnwritable(HpsopError):
+class StoreUnwritableError(HpsopError):
     """The file cannot be written just now (disk full, read-only, gone); the same write may be tried again later."""
 
 
@@ -54,7 +53,7 @@ class RunStore:
        lock behind.
     5. Readers read while it is written (``RunReader``): they never wait for the writer nor make it wait, and see a
        generation whole or not at all.
-    6. A write that fails raises ``StoreUnwritable`` and leaves the file as it was; it may be tried again.
+    6. A write that fails raises ``StoreUnwritableError`` and leaves the file as it was; it may be tried again.
     7. An older file opens, or the refusal says why not. A file of another program is never touched.
 
     The file holds the exact case, the seeds, software versions, references, evaluations, generations, and a journal of
@@ -62,16 +61,20 @@ class RunStore:
     file systems do not keep these promises.
 
     Args:
-        path: the file; it must exist unless ``case`` is given.
-        case: for a new run; for an existing file it must be None.
+        path: the file. One that holds a run is opened as it is.
+        case: begins a new run where there is none yet (no file, or an empty one).
         seeds: of a new run: designs to start from.
 
+    Attributes:
+        created: whether the run was begun by this very call.
+
     Raises:
-        InputError: no such file, not a run file, a newer schema, or a second writer.
+        InputError: no run and no case, not a run file, a newer schema, or a second writer.
     """
 
     def __init__(self, path: Path, case: Case | None = None, seeds: Sequence[DesignVariables] = ()) -> None:
         self.path = path
+        self.created = False
         self._guard = threading.RLock()
         if path.is_dir():
             raise InputError(f"{path}: is a folder; name a file, for example {path / 'run.hpsop'}")
@@ -87,21 +90,22 @@ class RunStore:
 
     def _opened(self, case: Case | None, seeds: Sequence[DesignVariables]) -> sqlite3.Connection:
         path = self.path
+        missing = InputError(f"{path}: holds no run; start one with 'hpsop optimize CASE --run {path}'")
         if case is None and not path.is_file():
-            raise InputError(f"{path}: no such run file; start one with 'hpsop optimize CASE --run {path}'")
+            raise missing
         try:
             connection = sqlite3.connect(path, isolation_level=None)
             version = schema_version(connection, path)
             connection.close()
-            if version > 0 and case is not None:
-                raise InputError(f"{path}: holds a run already; continue it or choose another file")
-            if version == 0 and case is None:
-                raise InputError(f"{path}: is an empty file; start a run with 'hpsop optimize CASE --run {path}'")
-            connection = connect_writer(path)
-            if case is not None:
-                _create(connection, case, seeds)
-            else:
+            self.created = version == 0
+            if version > 0:
+                connection = connect_writer(path)
                 migrate(connection, version)
+            elif case is None:
+                raise missing
+            else:
+                connection = connect_writer(path)
+                _create(connection, case, seeds)
         except sqlite3.Error as error:
             raise InputError(f"{path}: cannot be written ({error}); make room or choose another place") from error
         return connection
@@ -141,7 +145,7 @@ class RunStore:
         """Set values of the run, all or none.
 
         Raises:
-            StoreUnwritable: the file cannot be written.
+            StoreUnwritableError: the file cannot be written.
         """
         with self._writing() as connection:
             for key, value in values.items():
@@ -151,29 +155,25 @@ class RunStore:
         """Add a line to the run's journal.
 
         Raises:
-            StoreUnwritable: the file cannot be written.
+            StoreUnwritableError: the file cannot be written.
         """
         with self._writing() as connection:
             connection.execute("INSERT INTO journal (at, text) VALUES (?, ?)", (time.time(), text))
 
     # -- references ------------------------------------------------------------------------------------------------
 
-    def reference(self, level: int) -> tuple[bool, Reference | None]:
-        """Whether a level's reference is stored, and it (None stands for an evaluation that needs none)."""
+    def reference(self, level: int) -> str | None:
+        """A level's reference as JSON text, or None if it is not stored yet."""
         with self._guard:
             row = self._connection.execute("SELECT data FROM reference WHERE level = ?", (level,)).fetchone()
-        if row is None:
-            return False, None
-        data = json.loads(row[0])
-        return True, None if data is None else Reference.from_dict(data)
+        return None if row is None else str(row[0])
 
-    def record_reference(self, level: int, reference: Reference | None) -> None:
-        """Store a level's reference.
+    def record_reference(self, level: int, text: str) -> None:
+        """Store a level's reference as JSON text.
 
         Raises:
-            StoreUnwritable: the file cannot be written.
+            StoreUnwritableError: the file cannot be written.
         """
-        text = json_text(None if reference is None else reference.as_dict())
         with self._writing() as connection:
             connection.execute("INSERT INTO reference VALUES (?, ?)", (level, text))
 
@@ -188,6 +188,12 @@ class RunStore:
             ).fetchall()
         return {(row[0], row[1]): outcome_from_row(row[2:]) for row in rows}
 
+    def elapsed_of(self, number: int) -> float | None:
+        """How long an evaluation took in s, or None if there is none of that number."""
+        with self._guard:
+            row = self._connection.execute("SELECT elapsed FROM evaluations WHERE id = ?", (number,)).fetchone()
+        return None if row is None else float(row[0])
+
     def record_evaluation(self, number: int, candidate: Candidate, generation: int, result: str) -> Outcome:
         """Store a finished evaluation of the search; when this returns, it is never lost.
 
@@ -198,11 +204,12 @@ class RunStore:
             result: the evaluation's JSON text.
 
         Raises:
-            StoreUnwritable: the file cannot be written.
+            StoreUnwritableError: the file cannot be written.
         """
         data = json.loads(result)
         with self._writing() as connection:
-            _insert(connection, number, candidate.level, candidate.variables, candidate.origin, generation, data, result)
+            variables, origin = candidate.variables, candidate.origin
+            _insert(connection, number, candidate.level, variables, origin, generation, data, result)
         return Outcome.from_json(number, data)
 
     def record_by_hand(self, evaluation: Evaluation) -> int:
@@ -212,7 +219,7 @@ class RunStore:
             Its id; the old one if the same design at the same level was made by hand before.
 
         Raises:
-            StoreUnwritable: the file cannot be written.
+            StoreUnwritableError: the file cannot be written.
         """
         text = variables_text(evaluation.variables)
         data = evaluation.as_dict()
@@ -246,7 +253,7 @@ class RunStore:
         """Store a finished generation.
 
         Raises:
-            StoreUnwritable: the file cannot be written.
+            StoreUnwritableError: the file cannot be written.
         """
         row = (generation.number, generation.level, generation_text(generation), elapsed, time.time())
         with self._writing() as connection:
@@ -268,7 +275,7 @@ class RunStore:
                     with contextlib.suppress(sqlite3.Error):
                         connection.execute("ROLLBACK")
                 if isinstance(error, sqlite3.OperationalError):
-                    raise StoreUnwritable(f"{self.path}: {error}") from error
+                    raise StoreUnwritableError(f"{self.path}: {error}") from error
                 raise
 
     def _check_file(self) -> None:
@@ -276,9 +283,9 @@ class RunStore:
         try:
             there = os.stat(self.path)
         except OSError as error:
-            raise StoreUnwritable(f"{self.path}: the file is gone ({error.strerror})") from error
+            raise StoreUnwritableError(f"{self.path}: the file is gone ({error.strerror})") from error
         if (there.st_ino, there.st_dev) != (self._file.st_ino, self._file.st_dev):
-            raise StoreUnwritable(f"{self.path}: another file stands in its place")
+            raise StoreUnwritableError(f"{self.path}: another file stands in its place")
 
 
 def _create(connection: sqlite3.Connection, case: Case, seeds: Sequence[DesignVariables]) -> None:

@@ -1,0 +1,206 @@
+"""Evaluating the designs of a generation on workers that may raise, hang or die."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import time
+from collections import deque
+from collections.abc import Callable, Sequence
+from concurrent.futures import BrokenExecutor, CancelledError, Future
+from dataclasses import dataclass, field
+from typing import Any
+
+from hpsop_core.case import Case
+from hpsop_core.optimization.problem import Candidate
+from hpsop_core.runs.control import RunControl
+from hpsop_core.runs.executor import Workers
+from hpsop_core.runs.tasks import EvaluateFunction, evaluation_task, failure_text
+
+_TICK = 0.1  # seconds between looks at the controls while evaluations run
+_STOP_GRACE = 3.0  # seconds that evaluations under way may still have when the run is stopped
+_LAST_RESULTS = 5.0  # seconds to collect what else comes from a pool that broke
+_DEATHS_ALLOWED = 2
+
+
+@dataclass
+class _Job:
+    number: int
+    candidate: Candidate
+    reference: Any
+    deaths: int = 0
+    alone: bool = False
+    started: float = field(default=0.0)
+
+
+class BatchEvaluator:
+    """Evaluates designs side by side; each ends in exactly one result, whatever its worker does.
+
+    An exception or a NaN is caught in the worker (``evaluation_task``). Here is caught what takes the worker along:
+
+    * Time-out: all workers are killed; the design is recorded as failed, what else was under way is queued again.
+    * A dead worker (out of memory, a crash in compiled code): every design under way is a suspect, and suspects are
+      evaluated again one at a time, so the guilty one is known for certain: if its worker dies then too, it is
+      recorded as failed. So the result does not depend on the number of workers.
+
+    Args:
+        workers: where to evaluate.
+        evaluate: the evaluation.
+        case: what is optimised.
+        control: asked between evaluations.
+    """
+
+    def __init__(self, workers: Workers, evaluate: EvaluateFunction, case: Case, control: RunControl) -> None:
+        self._workers = workers
+        self._evaluate = evaluate
+        self._case = case
+        self._control = control
+        self._limit = case.optimization.evaluation_time_limit
+        self._queue: deque[_Job] = deque()
+        self._suspects: deque[_Job] = deque()
+        self._under_way: dict[Future[str], _Job] = {}
+
+    def run(
+        self,
+        tasks: Sequence[tuple[int, Candidate, Any]],
+        finished: Callable[[int, Candidate, str], None],
+        paused: Callable[[bool], None],
+    ) -> bool:
+        """Evaluate all.
+
+        Args:
+            tasks: (id, candidate, reference of its level).
+            finished: called with each result, an evaluation's JSON text, as it comes in.
+            paused: called with True when nothing is under way any more because of a pause, and with False when it is
+                over.
+
+        Returns:
+            False if the run was stopped before all were evaluated.
+
+        Raises:
+            WorkersUnavailableError: no workers can be had any more.
+        """
+        self._queue = deque(_Job(number, candidate, reference) for number, candidate, reference in tasks)
+        self._suspects = deque()
+        self._under_way = {}
+        try:
+            while self._queue or self._suspects or self._under_way:
+                if self._control.stopped:
+                    self._drain(finished)
+                    return False
+                if self._control.paused and not self._under_way:
+                    paused(True)
+                    self._control.wait_while_paused()
+                    paused(False)
+                    continue
+                if not self._control.paused:
+                    self._submit()
+                self._collect(finished)
+        except BaseException:
+            # A full disk that the user gave up on, Ctrl-C: nothing may go on computing behind the run's back.
+            self._abandon()
+            raise
+        return True
+
+    def _submit(self) -> None:
+        if self._suspects:
+            if not self._under_way:
+                job = self._suspects.popleft()
+                job.alone = True
+                self._start(job)
+            return
+        while self._queue and len(self._under_way) < self._workers.slots:
+            job = self._queue.popleft()
+            job.alone = self._workers.slots == 1
+            if not self._start(job):
+                return
+
+    def _start(self, job: _Job) -> bool:
+        candidate = job.candidate
+        arguments = (self._evaluate, self._case, candidate.variables, candidate.level, job.reference)
+        try:
+            future = self._workers.submit(evaluation_task, *arguments)
+        except BrokenExecutor:
+            # A worker died while it was idle: nobody here is to blame.
+            self._queue.appendleft(job)
+            self._requeue()
+            self._workers.rebuild()
+            return False
+        job.started = time.monotonic()
+        self._under_way[future] = job
+        return True
+
+    def _requeue(self) -> None:
+        jobs = sorted(self._under_way.values(), key=lambda job: job.number)
+        self._queue.extendleft(reversed(jobs))
+        self._under_way = {}
+
+    def _collect(self, finished: Callable[[int, Candidate, str], None]) -> None:
+        if not self._under_way:
+            return
+        concurrent.futures.wait(self._under_way, timeout=_TICK, return_when=concurrent.futures.FIRST_COMPLETED)
+        if self._take_finished(finished):
+            # Others of the broken pool may have finished; what has not is a suspect.
+            concurrent.futures.wait(self._under_way, timeout=_LAST_RESULTS)
+            self._take_finished(finished)
+            self._blame(finished)
+            return
+        now = time.monotonic()
+        late = [future for future, job in self._under_way.items() if now - job.started > self._limit]
+        late = [future for future in late if not future.done()]
+        if late:
+            for future in late:
+                reason = f"took longer than the limit of {self._limit:g} s"
+                self._fail(self._under_way.pop(future), "time-out", reason, finished)
+            self._requeue()
+            self._workers.rebuild()
+
+    def _take_finished(self, finished: Callable[[int, Candidate, str], None]) -> bool:
+        """Hand out results; True if a worker died."""
+        broken = False
+        for future in [future for future in self._under_way if future.done()]:
+            try:
+                error = future.exception()
+            except CancelledError:
+                broken = True
+                continue
+            if isinstance(error, (BrokenExecutor, CancelledError)):
+                broken = True
+                continue
+            job = self._under_way.pop(future)
+            if error is None:
+                finished(job.number, job.candidate, future.result())
+            elif type(error).__name__ == "KilledWorker":
+                # Dask has tried it on several workers already and knows for certain that this one was to blame.
+                self._fail(job, "worker", "its worker processes died", finished)
+            else:
+                # SystemExit, or a result that cannot be pickled.
+                text = " ".join(f"{type(error).__name__}: {error}".split())
+                self._fail(job, "worker", text, finished)
+        return broken
+
+    def _blame(self, finished: Callable[[int, Candidate, str], None]) -> None:
+        for job in sorted(self._under_way.values(), key=lambda job: job.number):
+            job.deaths += 1
+            if job.alone and job.deaths >= _DEATHS_ALLOWED:
+                self._fail(job, "worker", "its worker process died twice", finished)
+            else:
+                self._suspects.append(job)
+        self._under_way = {}
+        self._workers.rebuild()
+
+    def _fail(self, job: _Job, stage: str, reason: str, finished: Callable[[int, Candidate, str], None]) -> None:
+        candidate = job.candidate
+        elapsed = time.monotonic() - job.started
+        text = failure_text(self._case, candidate.variables, candidate.level, stage, reason, elapsed)
+        finished(job.number, candidate, text)
+
+    def _drain(self, finished: Callable[[int, Candidate, str], None]) -> None:
+        """The run ends: keep what finishes within a moment, drop the rest."""
+        concurrent.futures.wait(self._under_way, timeout=_STOP_GRACE)
+        self._take_finished(finished)
+        self._abandon()
+
+    def _abandon(self) -> None:
+        for future in self._under_way:
+            future.cancel()
+        self._under_way = {}

@@ -1,0 +1,235 @@
+"""Where evaluations run: local processes or a Dask cluster, each through a ``concurrent.futures.Executor``."""
+
+from __future__ import annotations
+
+import concurrent.futures
+import contextlib
+import multiprocessing
+import multiprocessing.forkserver
+import os
+import signal
+from collections.abc import Callable, Iterator
+from concurrent.futures import Executor, Future, ProcessPoolExecutor
+from typing import Any, Protocol
+
+from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.runs.tasks import start_worker, warm_up_task
+
+_START_LIMIT = 120.0  # seconds for all workers of a pool to import what they need
+_THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
+
+
+class WorkersUnavailableError(HpsopError):
+    """No worker can be had: processes cannot start, or the cluster does not answer."""
+
+
+class Workers(Protocol):
+    """An executor that can be thrown away and made anew."""
+
+    @property
+    def slots(self) -> int:
+        """Evaluations that really run side by side; no more are ever submitted, so each starts at once."""
+
+    @property
+    def description(self) -> str:
+        """For people."""
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Start a call.
+
+        Raises:
+            concurrent.futures.BrokenExecutor: a worker died while it was idle; call ``rebuild``.
+        """
+
+    def rebuild(self) -> None:
+        """Kill whatever runs and start again.
+
+        Raises:
+            WorkersUnavailableError: no new workers can be had.
+        """
+
+    def close(self) -> None:
+        """Leave no process behind."""
+
+
+def default_workers() -> int:
+    """The number of cores that this process may use."""
+    return len(os.sched_getaffinity(0)) if hasattr(os, "sched_getaffinity") else os.cpu_count() or 1
+
+
+class LocalWorkers:
+    """Processes of this machine.
+
+    They come from a fork server: a small process without threads that has the solvers imported already, so a new worker
+    is there in milliseconds and never inherits half a lock from the page's threads.
+
+    Args:
+        count: of processes.
+
+    Raises:
+        InputError: count is below 1.
+        WorkersUnavailableError: the processes cannot start.
+    """
+
+    def __init__(self, count: int) -> None:
+        if count < 1:
+            raise InputError(f"--workers {count}: give 1 or more")
+        self._count = count
+        self._pool: ProcessPoolExecutor | None = None
+        self._processes: set[int] = set()
+        self._start()
+
+    @property
+    def slots(self) -> int:
+        """The number of processes."""
+        return self._count
+
+    @property
+    def description(self) -> str:
+        """For people."""
+        return f"{self._count} local process" + ("es" if self._count > 1 else "")
+
+    def _start(self) -> None:
+        if "forkserver" in multiprocessing.get_all_start_methods():
+            method = "forkserver"
+            multiprocessing.forkserver.set_forkserver_preload(["hpsop_core.runs.preload"])
+            with _one_thread_environment():
+                multiprocessing.forkserver.ensure_running()
+        else:
+            method = "spawn"
+        self._pool = ProcessPoolExecutor(self._count, multiprocessing.get_context(method), initializer=start_worker)
+        try:
+            with _one_thread_environment():
+                probes = [self._pool.submit(warm_up_task, 0.02) for _ in range(self._count)]
+            self._processes = {probe.result(timeout=_START_LIMIT) for probe in probes}
+        except (concurrent.futures.BrokenExecutor, concurrent.futures.TimeoutError) as error:
+            self.close()
+            raise WorkersUnavailableError(
+                "worker processes do not start; a script that calls optimize() must do so below "
+                "'if __name__ == \"__main__\":'"
+            ) from error
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Start a call in a worker."""
+        if self._pool is None:
+            raise concurrent.futures.BrokenExecutor("the workers are closed")
+        return self._pool.submit(function, *arguments)
+
+    def rebuild(self) -> None:
+        """Kill every worker, whatever it does, and start new ones."""
+        self._kill()
+        self._start()
+
+    def _kill(self) -> None:
+        pool, self._pool = self._pool, None
+        if pool is None:
+            return
+        # The pool knows all its processes, also one that joined late; its own record is private, the warm-up's is not.
+        alive = set(getattr(pool, "_processes", None) or ()) | self._processes
+        children = {child.pid for child in multiprocessing.active_children()}
+        for process in alive & children:
+            with contextlib.suppress(ProcessLookupError):
+                os.kill(process, signal.SIGKILL)
+        pool.shutdown(wait=True, cancel_futures=True)
+        self._processes = set()
+
+    def close(self) -> None:
+        """Kill every worker; doing so twice does nothing."""
+        self._kill()
+
+
+class DaskWorkers:
+    """The workers of a Dask scheduler, by ``Client.get_executor()``.
+
+    Args:
+        address: "HOST:PORT" of the scheduler.
+
+    Raises:
+        InputError: Dask is not installed.
+        WorkersUnavailableError: the scheduler does not answer, or has no workers.
+    """
+
+    def __init__(self, address: str) -> None:
+        try:
+            import distributed
+        except ImportError as error:
+            raise InputError("--executor dask: Dask is not installed; pip install 'hpsop[dask]'") from error
+        client: Any = distributed.Client
+        self._address = address
+        target = address if "://" in address else f"tcp://{address}"
+        try:
+            self._client: Any = client(target, timeout=10, set_as_default=False)
+            self._client.wait_for_workers(1, timeout=30)
+        except (OSError, TimeoutError, ValueError) as error:
+            raise WorkersUnavailableError(
+                f"--executor dask:{address}: no scheduler with workers answers there "
+                f"({error or type(error).__name__}); start 'dask scheduler' and 'dask worker'"
+            ) from error
+        # A task that kills its worker is not tried on every worker in turn: the run decides about a second try.
+        self._executor: Executor = self._client.get_executor(retries=0)
+
+    @property
+    def slots(self) -> int:
+        """Threads of all workers."""
+        return max(1, int(sum(self._client.nthreads().values())))
+
+    @property
+    def description(self) -> str:
+        """For people."""
+        return f"Dask at {self._address}, {self.slots} threads"
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        """Start a call on the cluster."""
+        try:
+            return self._executor.submit(function, *arguments)
+        except Exception as error:
+            raise concurrent.futures.BrokenExecutor(f"Dask at {self._address}: {error}") from error
+
+    def rebuild(self) -> None:
+        """Restart the scheduler's workers: a hanging call cannot be stopped otherwise. Use a scheduler of your own."""
+        try:
+            self._client.restart(timeout=30)
+            self._client.wait_for_workers(1, timeout=30)
+        except Exception as error:
+            raise WorkersUnavailableError(f"Dask at {self._address} does not answer: {error}") from error
+        self._executor = self._client.get_executor(retries=0)
+
+    def close(self) -> None:
+        """Leave the cluster; what still runs there is cancelled."""
+        self._executor.shutdown(wait=False, cancel_futures=True)
+        self._client.close(timeout=5)
+
+
+def make_workers(executor: str, count: int | None) -> Workers:
+    """Workers as ``--executor`` and ``--workers`` name them.
+
+    Args:
+        executor: "local" or "dask:HOST:PORT".
+        count: local processes; all cores by default.
+
+    Raises:
+        InputError: no such executor.
+        WorkersUnavailableError: they cannot be had.
+    """
+    kind, _, address = executor.partition(":")
+    if kind == "local" and not address:
+        return LocalWorkers(default_workers() if count is None else count)
+    if kind == "dask" and address:
+        if count is not None:
+            raise InputError("--workers: the Dask cluster decides; leave it away with --executor dask")
+        return DaskWorkers(address)
+    raise InputError(f"--executor {executor}: write local or dask:HOST:PORT")
+
+
+@contextlib.contextmanager
+def _one_thread_environment() -> Iterator[None]:
+    before = {name: os.environ.get(name) for name in _THREAD_VARIABLES}
+    os.environ.update(dict.fromkeys(_THREAD_VARIABLES, "1"))
+    try:
+        yield
+    finally:
+        for name, value in before.items():
+            if value is None:
+                os.environ.pop(name, None)
+            else:
+                os.environ[name] = value

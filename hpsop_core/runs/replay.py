@@ -1,0 +1,426 @@
+"""Driving a run: ask, answer from the file or by evaluation, tell. To resume is to do the same again.
+
+The evaluations on disk are the only checkpoint. A run that is started again asks the same questions from its seed and
+finds the answers in the file (about 20 ms a generation) until it comes to the first one that is missing; from there it
+computes. So nothing of the algorithm's state is ever stored, and nothing can be forgotten between two checkpoints.
+"""
+
+from __future__ import annotations
+
+import concurrent.futures
+import dataclasses
+import json
+import time
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.optimization.problem import Candidate, Outcome
+from hpsop_core.optimization.two_level import Generation, TwoLevelSearch
+from hpsop_core.runs.batch import BatchEvaluator
+from hpsop_core.runs.control import RunControl
+from hpsop_core.runs.events import RunEvent, RunSnapshot, State
+from hpsop_core.runs.executor import Workers
+from hpsop_core.runs.records import variables_text
+from hpsop_core.runs.schema import software_versions
+from hpsop_core.runs.store import RunStore, StoreUnwritableError
+from hpsop_core.runs.tasks import Physics, failure_text, reference_task
+
+_EVENT_INTERVAL = 0.1  # seconds between events about progress within a generation
+_RETRY_INTERVAL = 1.0  # seconds between tries to write to a full disk
+_RECENT = 10  # generations that the estimate of the time left looks back on
+_LEVELS = (1, 2)
+
+_T = TypeVar("_T")
+
+
+class _StoppedError(Exception):
+    """The run was asked to stop."""
+
+
+class RunDriver:
+    """Drives one run to its end, or to a stop. One thread calls ``run``; any thread uses the control.
+
+    Args:
+        store: the run file.
+        physics: how designs are evaluated.
+        make_workers: called when the first evaluation is needed.
+        control: what people ask for.
+        emit: receives the events, in the driving thread.
+    """
+
+    def __init__(
+        self,
+        store: RunStore,
+        physics: Physics,
+        make_workers: Callable[[], Workers],
+        control: RunControl,
+        emit: Callable[[RunEvent], None],
+    ) -> None:
+        self._store = store
+        self._case = store.case
+        self._physics = physics
+        self._make_workers = make_workers
+        self._workers: Workers | None = None
+        self._control = control
+        self._emit = emit
+        self._known: dict[tuple[int, str], Outcome] = {}
+        self._numbered: dict[tuple[int, str], int] = {}
+        self._next_number = len(_LEVELS) + 1
+        self._references: dict[int, Any] = {}
+        self._last_event = 0.0
+        self._level2_seconds: float | None = None
+        self.snapshot = RunSnapshot()
+
+    def run(self) -> State:
+        """Drive the run.
+
+        Returns:
+            "finished" or "stopped".
+
+        Raises:
+            InputError: the initial design cannot be computed, or the file cannot be continued to the same bits.
+            WorkersUnavailableError: no workers can be had.
+        """
+        state: State = "failed"
+        reason = ""
+        try:
+            self._search()
+            state = "finished"
+        except _StoppedError:
+            state = "stopped"
+        except HpsopError as error:
+            reason = str(error)
+            raise
+        except BaseException as error:
+            reason = f"{type(error).__name__}: {error}"
+            raise
+        finally:
+            if self._workers is not None:
+                self._workers.close()
+                self._workers = None
+            self._end(state, reason)
+        return state
+
+    def _end(self, state: State, reason: str) -> None:
+        try:
+            self._store.set_values(state=state, reason=reason)
+            if reason:
+                self._store.note(f"{state}: {reason}")
+        except StoreUnwritableError as error:
+            # The evaluations are what counts; the file only goes on calling the run interrupted.
+            reason = reason or str(error)
+        self._tell("state", state=state, reason=reason)
+
+    # -- the loop --------------------------------------------------------------------------------------------------
+
+    def _search(self) -> None:
+        store, settings = self._store, self._case.optimization
+        search = TwoLevelSearch(self._case.bounds, settings, self._case.initial.variables, store.seeds)
+        search.extend(max(settings.generations, store.generations))
+        self._known = store.outcomes()
+        times = store.generation_times()
+        self.snapshot = dataclasses.replace(
+            self.snapshot,
+            generations=search.generations,
+            level=search.level,
+            evaluations=(self._count(1), self._count(2)),
+            failures=sum(outcome.failed for outcome in self._known.values()),
+            elapsed=sum(elapsed for _, elapsed in times),
+        )
+        self._keep(lambda: store.set_values(state="running", reason=""))
+        self._note_versions()
+        self._tell("state", state="running", reason="")
+        first, second = (1, 2) if settings.level1_generations > 0 else (2, 1)
+        self._evaluate_initial(first, planned=True)
+        while True:
+            self._extend(search)
+            if self._control.stopped and not self._is_known(search):
+                raise _StoppedError
+            candidates = search.ask()
+            if not candidates:
+                break
+            self._generation(search, candidates, times)
+            if search.number == 1:
+                # Only now: the first front shall be seen before the slower level has been compiled and computed.
+                needed = first == 1 and settings.level1_generations < search.generations
+                self._evaluate_initial(second, planned=needed)
+
+    def _is_known(self, search: TwoLevelSearch) -> bool:
+        # A stop during the replay waits for its end: that takes seconds, and the snapshot is then worth something.
+        return self._store.generation(search.number + 1) is not None
+
+    def _count(self, level: int) -> int:
+        return sum(1 for known_level, _ in self._known if known_level == level)
+
+    def _extend(self, search: TwoLevelSearch) -> None:
+        extension = self._control.take_extension()
+        if extension:
+            total = search.generations + extension
+            self._keep(lambda: self._store.set_values(generations=str(total)))
+            search.extend(total)
+            self._tell("state", generations=total)
+
+    def _generation(
+        self, search: TwoLevelSearch, candidates: tuple[Candidate, ...], times: list[tuple[int, float]]
+    ) -> None:
+        started = time.monotonic()
+        number = search.number + 1
+        keys = [(candidate.level, variables_text(candidate.variables)) for candidate in candidates]
+        missing: list[tuple[int, Candidate]] = []
+        for key, candidate in zip(keys, candidates, strict=True):
+            if self._number(key) and key not in self._known:
+                missing.append((self._numbered[key], candidate))
+        self.snapshot = dataclasses.replace(
+            self.snapshot,
+            level=candidates[0].level,
+            population=len(candidates),
+            done=len(candidates) - len(missing),
+            seconds_left=self._seconds_left(search, times),
+        )
+        waited = self._evaluate(missing, number) if missing else 0.0
+        generation = search.tell([self._known[key] for key in keys])
+        self.snapshot = dataclasses.replace(
+            self.snapshot,
+            generation=number,
+            hypervolume=generation.hypervolume,
+            feasible_share=generation.feasible_share,
+        )
+        stored = self._store.generation(number)
+        if stored is not None:
+            self._compare(stored, generation)
+            self._progress()
+            return
+        elapsed = time.monotonic() - started - waited
+        self._keep(lambda: self._store.record_generation(generation, elapsed))
+        times.append((generation.level, elapsed))
+        self._tell(
+            "generation",
+            generation,
+            elapsed=self.snapshot.elapsed + elapsed,
+            seconds_left=self._seconds_left(search, times),
+        )
+        if generation.note:
+            text = f"generation {number}: {generation.note}"
+            self._keep(lambda: self._store.note(text))
+            self._tell("handover", generation, text=generation.note)
+
+    def _number(self, key: tuple[int, str]) -> bool:
+        """Number a design on its first appearance; False if it has been numbered before."""
+        if key in self._numbered:
+            return False
+        # The initial design has the numbers 1 and 2 by its level, and keeps them when it is in a population too.
+        level, text = key
+        if text == variables_text(self._case.initial.variables):
+            self._numbered[key] = level
+            return True
+        self._numbered[key] = self._next_number
+        self._next_number += 1
+        known = self._known.get(key)
+        if known is not None and known.evaluation_id != self._numbered[key]:
+            raise self._diverged(f"design {known.evaluation_id} is asked for as number {self._numbered[key]}")
+        return True
+
+    def _compare(self, stored: Generation, replayed: Generation) -> None:
+        if stored != replayed:
+            raise self._diverged(f"generation {stored.number} comes out different")
+
+    def _diverged(self, what: str) -> InputError:
+        made_with = json.loads(self._store.value("versions", "{}"))
+        now = software_versions()
+        changed = [f"{name} {old}, now {now.get(name)}" for name, old in made_with.items() if now.get(name) != old]
+        because = "it was made with " + "; ".join(changed) if changed else "its content was changed"
+        return InputError(
+            f"{self._store.path}: cannot be continued to the same bits ({what}): {because}; "
+            "read it as it is, or start a new run from its front"
+        )
+
+    def _note_versions(self) -> None:
+        made_with, now = json.loads(self._store.value("versions", "{}")), software_versions()
+        if made_with != now and self._known:
+            text = f"continued with other versions: {json.dumps(now)}"
+            self._keep(lambda: self._store.note(text))
+
+    # -- evaluations -----------------------------------------------------------------------------------------------
+
+    def _evaluate(self, missing: list[tuple[int, Candidate]], generation: int) -> float:
+        """Evaluate designs and store each as it finishes; returns the seconds spent waiting for people or disks."""
+        waited = 0.0
+
+        def finished(number: int, candidate: Candidate, result: str) -> None:
+            nonlocal waited
+            waited += self._record(number, candidate, generation, result)
+
+        def paused(now: bool) -> None:
+            nonlocal waited
+            waited += -time.monotonic() if now else time.monotonic()
+            self._change_state("paused" if now else "running", "")
+
+        tasks = [(number, candidate, self._reference(candidate.level)) for number, candidate in missing]
+        evaluator = BatchEvaluator(self._ready_workers(), self._physics.evaluate, self._case, self._control)
+        if not evaluator.run(tasks, finished, paused):
+            raise _StoppedError
+        return waited
+
+    def _record(self, number: int, candidate: Candidate, generation: int, result: str) -> float:
+        started = time.monotonic()
+        blocked = False
+
+        def write() -> Outcome:
+            return self._store.record_evaluation(number, candidate, generation, result)
+
+        try:
+            outcome = write()
+        except StoreUnwritableError as error:
+            blocked = True
+            outcome = self._keep(write, error)
+        self._known[candidate.level, variables_text(candidate.variables)] = outcome
+        counts = list(self.snapshot.evaluations)
+        counts[candidate.level - 1] += 1
+        self.snapshot = dataclasses.replace(
+            self.snapshot,
+            done=self.snapshot.done + 1,
+            evaluations=(counts[0], counts[1]),
+            failures=self.snapshot.failures + outcome.failed,
+        )
+        if outcome.failed:
+            data = json.loads(result)
+            self._tell("failure", evaluation_id=number, text=f"{data.get('stage', '')}: {data['reason']}")
+        self._progress()
+        return time.monotonic() - started if blocked else 0.0
+
+    def _evaluate_initial(self, level: int, planned: bool) -> None:
+        """The initial design, at both levels, whether or not a population holds it."""
+        variables = self._case.initial.variables
+        key = (level, variables_text(variables))
+        self._number(key)
+        candidate = Candidate(level, variables, "initial")
+        if key not in self._known:
+            try:
+                self._reference(level)
+            except InputError as error:
+                if planned:
+                    raise
+                # No generation needs this level; that it cannot be computed is worth a record, not the run.
+                text = failure_text(self._case, variables, level, "reference", str(error), 0.0)
+                self._record(level, candidate, 0, text)
+            else:
+                self._evaluate([(level, candidate)], 0)
+        outcome = self._known[key]
+        if outcome.failed and planned:
+            raise InputError(
+                f"{self._case.name}: the initial design cannot be evaluated at level {level}, and everything is "
+                f"normalised by it; see 'hpsop show {self._store.path} --design {level}' and change [initial]"
+            )
+
+    def _reference(self, level: int) -> Any:
+        if level not in self._references:
+            text = self._store.reference(level)
+            if text is None:
+                text = self._computed_reference(level)
+                stored = text
+                self._keep(lambda: self._store.record_reference(level, stored))
+            # Also a fresh one goes through its text: a resumed run has nothing else.
+            data = json.loads(text)
+            self._references[level] = None if data is None else self._physics.reference_from_dict(data)
+        return self._references[level]
+
+    def _computed_reference(self, level: int) -> str:
+        """Computed by a worker like everything else: with one BLAS thread, and a crash there is not ours."""
+        workers = self._ready_workers()
+        reason = "its worker process died"
+        try:
+            future = workers.submit(reference_task, self._physics.reference_for, self._case, level)
+            while not concurrent.futures.wait([future], timeout=_EVENT_INTERVAL).done:
+                if self._control.stopped:
+                    raise _StoppedError
+            done, text = future.result()
+            if done:
+                return str(text)
+            reason = str(text)
+        except concurrent.futures.BrokenExecutor:
+            workers.rebuild()
+        raise InputError(
+            f"{self._case.name}: the initial design cannot be computed at level {level} ({reason}); change [initial]"
+        )
+
+    def _ready_workers(self) -> Workers:
+        if self._workers is None:
+            self._workers = self._make_workers()
+            self._tell("state", workers=self._workers.description)
+        return self._workers
+
+    # -- telling and keeping ---------------------------------------------------------------------------------------
+
+    def _keep(self, write: Callable[[], _T], error: StoreUnwritableError | None = None) -> _T:
+        """Write to the file; while it cannot be written the run is paused with the reason and tries again."""
+        if error is None:
+            try:
+                return write()
+            except StoreUnwritableError as first:
+                error = first
+        while True:
+            self._tell("state", state="paused", reason=f"{error}; goes on when it can be written again")
+            self._control.wait(_RETRY_INTERVAL)
+            if self._control.stopped:
+                raise _StoppedError
+            try:
+                result = write()
+            except StoreUnwritableError as again:
+                error = again
+                continue
+            self._tell("state", state="running", reason="")
+            return result
+
+    def _change_state(self, state: State, reason: str) -> None:
+        self._keep(lambda: self._store.set_values(state=state, reason=reason))
+        self._tell("state", state=state, reason=reason)
+
+    def _progress(self) -> None:
+        now = time.monotonic()
+        if now - self._last_event >= _EVENT_INTERVAL:
+            self._last_event = now
+            self._tell("evaluation")
+
+    def _tell(
+        self,
+        kind: Any,
+        generation: Generation | None = None,
+        evaluation_id: int | None = None,
+        text: str = "",
+        **changes: Any,
+    ) -> None:
+        if changes:
+            if kind == "state" and all(getattr(self.snapshot, name) == value for name, value in changes.items()):
+                return
+            self.snapshot = dataclasses.replace(self.snapshot, **changes)
+        self._emit(RunEvent(kind, self.snapshot, generation, evaluation_id, text))
+
+    def _seconds_left(self, search: TwoLevelSearch, times: list[tuple[int, float]]) -> float | None:
+        settings = self._case.optimization
+        left = search.generations - search.number
+        at_level1 = 0
+        if search.level == 1:
+            level1 = settings.level1_generations
+            only_level1 = level1 >= settings.generations
+            at_level1 = left if only_level1 else max(0, level1 - search.number)
+        seconds = 0.0
+        for level, count in ((1, at_level1), (2, left - at_level1)):
+            if count == 0:
+                continue
+            recent = [elapsed for known_level, elapsed in times if known_level == level][-_RECENT:]
+            if recent:
+                seconds += count * sum(recent) / len(recent)
+            elif level == 2 and self._level2_estimate() is not None:
+                seconds += count * (self._level2_estimate() or 0.0)
+            else:
+                return None
+        return seconds
+
+    def _level2_estimate(self) -> float | None:
+        """Seconds a generation at level 2, from the initial design's evaluation there."""
+        if self._level2_seconds is None and self._workers is not None:
+            elapsed = self._store.elapsed_of(2)
+            if elapsed is not None:
+                self._level2_seconds = elapsed * self._case.optimization.population / self._workers.slots
+        return self._level2_seconds

@@ -1,0 +1,166 @@
+"""What a worker process does: one evaluation in, one JSON text out, and nothing that can end a run."""
+
+from __future__ import annotations
+
+import ctypes
+import math
+import os
+import signal
+import sys
+import threading
+import time
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+from multiprocessing import connection, parent_process
+from typing import Any, TypeAlias
+
+import threadpoolctl
+
+from hpsop_core.case import Case
+from hpsop_core.design import DesignVariables
+from hpsop_core.errors import SolverFailure
+from hpsop_core.evaluation_result import Evaluation, failed_evaluation
+from hpsop_core.runs.records import json_text
+
+EvaluateFunction: TypeAlias = Callable[[Case, DesignVariables, int, Any], Evaluation]
+"""(case, variables, level, reference) -> evaluation; picklable."""
+
+ReferenceFunction: TypeAlias = Callable[[Case, int], Any]
+"""(case, level) -> a reference with ``as_dict``, or None for an evaluation that needs none; picklable."""
+
+_NICENESS = 5
+_PR_SET_PDEATHSIG = 1
+_threads_pinned = False
+
+
+@dataclass(frozen=True)
+class Physics:
+    """How designs are evaluated; everything in it can be pickled.
+
+    Attributes:
+        evaluate: the evaluation.
+        reference_for: what normalises at a level.
+        reference_from_dict: makes a reference from its ``as_dict``.
+    """
+
+    evaluate: EvaluateFunction
+    reference_for: ReferenceFunction
+    reference_from_dict: Callable[[Mapping[str, Any]], Any]
+
+
+def hydrodynamics() -> Physics:
+    """The real thing."""
+    # Imported here: this module is also the workers' first import, and tests bring their own physics.
+    from hpsop_core.evaluation import Reference, evaluate, reference_for
+
+    return Physics(evaluate, reference_for, Reference.from_dict)
+
+
+def evaluation_task(
+    evaluate: EvaluateFunction, case: Case, variables: DesignVariables, level: int, reference: Any
+) -> str:
+    """Evaluate one design in this process.
+
+    Returns:
+        The evaluation's JSON text. An exception, a NaN or an infinity becomes a failed evaluation with its stage and
+        reason: nothing but the death of the process comes out of here otherwise.
+    """
+    pin_threads()
+    started = time.perf_counter()
+    try:
+        evaluation = evaluate(case, variables, level, reference)
+        fault = _not_a_number(evaluation)
+        if not fault:
+            return json_text(evaluation.as_dict())
+        stage, reason = "check", fault
+    except SolverFailure as failure:
+        stage, reason = failure.stage, failure.reason
+    except Exception as error:  # noqa: BLE001 - whatever a solver raises is this design's failure, not the run's
+        stage, reason = "evaluation", _one_line(error)
+    return failure_text(case, variables, level, stage, reason, time.perf_counter() - started)
+
+
+def failure_text(case: Case, variables: DesignVariables, level: int, stage: str, reason: str, elapsed: float) -> str:
+    """The JSON text of a failed evaluation."""
+    return json_text(failed_evaluation(case.name, variables, level, stage, reason, elapsed).as_dict())
+
+
+def reference_task(reference_for: ReferenceFunction, case: Case, level: int) -> tuple[bool, str]:
+    """Compute a level's reference in this process: (True, JSON text) or (False, reason)."""
+    pin_threads()
+    try:
+        reference = reference_for(case, level)
+        return True, json_text(None if reference is None else reference.as_dict())
+    except Exception as error:  # noqa: BLE001 - told to the user as the reason why the run cannot start
+        return False, _one_line(error)
+
+
+def warm_up_task(seconds: float) -> int:
+    """Occupy a worker for a moment, so that the pool starts all of them; returns the process id."""
+    pin_threads()
+    time.sleep(seconds)
+    return os.getpid()
+
+
+def _one_line(error: BaseException) -> str:
+    text = " ".join(str(error).split())
+    name = type(error).__name__
+    return text if isinstance(error, SolverFailure) else f"{name}: {text}" if text else name
+
+
+def _not_a_number(evaluation: Evaluation) -> str:
+    """Where an evaluation that calls itself ok holds something that is no finite number, or ""."""
+    if evaluation.ok:
+        for name in ("f1", "f2"):
+            if evaluation.objectives.get(name) is None:
+                return f"objectives.{name} is missing"
+    return _search(evaluation.as_dict(), "")
+
+
+def _search(value: Any, path: str) -> str:
+    if isinstance(value, float) and not math.isfinite(value):
+        return f"{path} is {value}"
+    if isinstance(value, dict):
+        items = [(f"{path}.{key}" if path else str(key), item) for key, item in value.items()]
+    elif isinstance(value, (list, tuple)):
+        items = [(f"{path}[{index}]", item) for index, item in enumerate(value)]
+    else:
+        return ""
+    for name, item in items:
+        fault = _search(item, name)
+        if fault:
+            return fault
+    return ""
+
+
+def pin_threads() -> None:
+    """One BLAS thread in this process: more would change the last bits of a result, and fight for the cores."""
+    global _threads_pinned
+    if not _threads_pinned:
+        threadpoolctl.threadpool_limits(limits=1)
+        _threads_pinned = True
+
+
+def start_worker() -> None:
+    """What a local worker process does first: obey its parent alone, and never outlive it."""
+    # Ctrl-C in a terminal reaches every process of the group; the parent decides what it means.
+    signal.signal(signal.SIGINT, signal.SIG_IGN)
+    _die_with_parent()
+    os.nice(_NICENESS)  # the page and the desktop stay smooth while every core computes
+    pin_threads()
+
+
+def _die_with_parent() -> None:
+    """End this process when the run's process ends, even by SIGKILL."""
+    parent = parent_process()
+    if parent is not None:
+        threading.Thread(target=_watch, args=(parent.sentinel,), name="parent-watch", daemon=True).start()
+    if sys.platform == "linux":
+        # The watching thread needs Python's lock, which compiled code may hold for as long as it hangs. The kernel
+        # needs nothing. Our direct parent is the fork server, which ends when the run's process does.
+        ctypes.CDLL(None).prctl(_PR_SET_PDEATHSIG, signal.SIGKILL)
+
+
+def _watch(sentinel: int) -> None:
+    connection.wait([sentinel])
+    os._exit(1)

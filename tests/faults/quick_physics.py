@@ -1,0 +1,138 @@
+"""Evaluations that cost nothing, and ones that go wrong on purpose. Module-level functions: workers import them."""
+
+from __future__ import annotations
+
+import hashlib
+import os
+import signal
+import time
+from pathlib import Path
+
+from hpsop_core.case import Case
+from hpsop_core.design import VARIABLE_NAMES, DesignVariables
+from hpsop_core.errors import SolverFailure
+from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.runs.tasks import Physics
+
+MARKS = "HPSOP_TEST_MARKS"
+"""Environment variable naming a folder where faults that shall happen once leave a mark."""
+
+
+def evaluate(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """Two conflicting smooth objectives near 1 with a kept and a violated region; level 2 is shifted."""
+    space = case.bounds
+    shares = [
+        (value - low) / (high - low) if high > low else 0.0
+        for value, low, high in zip(variables.key(), space.lower, space.upper, strict=True)
+    ]
+    shift = 0.03 * (level - 1)
+    first = 0.8 + 0.3 * shares[0] + 0.2 * sum((share - 0.4) ** 2 for share in shares[1:]) + shift
+    second = 1.1 - 0.3 * shares[0] ** 0.5 * (1.0 if shares[0] >= 0.0 else 0.0) if shares[0] >= 0.0 else 1.2
+    second += 0.2 * sum((share - 0.6) ** 2 for share in shares[1:]) + shift
+    constraints = {"displacement": 0.2 - shares[1], "diameter_to_draft": -0.1, "cavitation": 0.1 - shares[2]}
+    return Evaluation(
+        case=case.name,
+        level=level,
+        status="ok",
+        reason="",
+        variables=variables,
+        objectives={"f1": first, "f2": second},
+        constraints=constraints,
+        feasible=all(value <= 1e-6 for value in constraints.values()),
+        elapsed=0.0,
+    )
+
+
+def no_reference(case: Case, level: int) -> None:
+    """Nothing to normalise with."""
+
+
+def no_reference_from_dict(data: object) -> None:
+    """Never called: there is none."""
+
+
+def physics(function: object = evaluate) -> Physics:
+    """A physics around one of this module's evaluations."""
+    return Physics(function, no_reference, no_reference_from_dict)  # type: ignore[arg-type]
+
+
+def slow(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """The same after a while, so that a kill hits something."""
+    time.sleep(0.02)
+    return evaluate(case, variables, level, reference)
+
+
+def slower(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """The same after a longer while."""
+    time.sleep(0.3)
+    return evaluate(case, variables, level, reference)
+
+
+def is_initial(case: Case, variables: DesignVariables) -> bool:
+    """The design that must not fail."""
+    return variables == case.initial.variables
+
+
+def lot(variables: DesignVariables, level: int) -> float:
+    """A number in [0, 1) that looks random and depends on the design alone."""
+    text = repr((level, [float(getattr(variables, name)) for name in VARIABLE_NAMES]))
+    return int.from_bytes(hashlib.sha256(text.encode()).digest()[:6], "big") / 2.0**48
+
+
+def every_fault(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """5 % of the designs each: a solver's failure, an exception, a NaN, an infinity, a missing number, an exit."""
+    number = lot(variables, level)
+    result = evaluate(case, variables, level, reference)
+    if is_initial(case, variables) or number >= 0.30:
+        return result
+    if number < 0.05:
+        raise SolverFailure("rankine", "the linear system is singular")
+    if number < 0.10:
+        raise ZeroDivisionError("a solver's defect")
+    values = dict(result.as_dict())
+    if number < 0.15:
+        values["objectives"] = {"f1": float("nan"), "f2": 1.0}
+    elif number < 0.20:
+        values["constraints"] = {**values["constraints"], "displacement": float("inf")}
+    elif number < 0.25:
+        values["objectives"] = {"f1": None, "f2": 1.0}
+    else:
+        raise SystemExit(3)
+    return Evaluation.from_dict(values)
+
+
+def dying(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """5 % of the designs take their worker along, each time they are tried."""
+    if not is_initial(case, variables) and lot(variables, level) < 0.05:
+        os._exit(17)
+    return evaluate(case, variables, level, reference)
+
+
+def dying_once(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """5 % of the designs have their worker killed by the system, the first time they are tried."""
+    if not is_initial(case, variables) and lot(variables, level) < 0.05:
+        mark = Path(os.environ[MARKS]) / f"{lot(variables, level):.12f}"
+        if not mark.exists():
+            mark.touch()
+            os.kill(os.getpid(), signal.SIGKILL)
+    return evaluate(case, variables, level, reference)
+
+
+def hanging(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """4 % of the designs never come back."""
+    if not is_initial(case, variables) and lot(variables, level) < 0.04:
+        time.sleep(3600)
+    return evaluate(case, variables, level, reference)
+
+
+def failing_everywhere(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """Not even the initial design can be computed."""
+    raise SolverFailure("hull", "no such form")
+
+
+def counting(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """Leaves one line for each time it is called: nothing finished may be computed again."""
+    time.sleep(0.02)
+    with open(Path(os.environ[MARKS]) / "calls", "a", encoding="utf-8") as stream:
+        stream.write(f"{level} {[float(getattr(variables, name)) for name in VARIABLE_NAMES]!r}\n")
+    return evaluate(case, variables, level, reference)
