@@ -28,7 +28,7 @@ from hpsop_core.evaluation_result import (
 )
 from hpsop_core.geometry.hull import Hull
 from hpsop_core.geometry.propeller import Propeller
-from hpsop_core.geometry.propeller_clearance import propeller_clearance
+from hpsop_core.geometry.propeller_clearance import baseline_clearance, propeller_clearance
 from hpsop_core.hydro import cavitation
 from hpsop_core.hydro.interaction import thrust_deduction, wake_fraction
 from hpsop_core.hydro.operating_point import PropellerCurve, match
@@ -363,6 +363,8 @@ def _assess(
     warnings = list(hull.warnings)
     if clearance < 0.0:
         warnings.append(f"the propeller would cut the hull: tip clearance {clearance:.2f} m; reduce its diameter")
+    if baseline_clearance(hull, propeller) < 0.0:
+        warnings.append("the blade tips reach below the baseline; reduce the diameter or raise the draft")
     if constraints["form"] is not None and constraints["form"] > FEASIBILITY_TOLERANCE and affine:
         warnings.append(f"booked block coefficient {physics.effective_block_coefficient:.3f} is outside its limits")
     hydrostatics = hull.hydrostatics
@@ -450,7 +452,8 @@ def _constraints(
         ),
         "cavitation": cavitation_excess,
         "form": form,
-        "propeller_clearance": -clearance / physics.propeller.diameter,
+        "propeller_clearance": -min(clearance, baseline_clearance(physics.hull, physics.propeller))
+        / physics.propeller.diameter,
     }
 
 
