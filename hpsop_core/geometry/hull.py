@@ -51,7 +51,10 @@ class ParentHull:
         shift_frame: where sections may move.
         underwater, topsides: patches by name, port side; v = 1 of an underwater patch is the design waterline or, for
             the parts that are submerged altogether, their upper centreline.
-        caps: names of the patches whose edge u = 0 is an open flat end (the boss).
+        caps: (patch, "first" or "last"): ends in u that are flat and open (boss, transom), closed towards the
+            centreplane by meshes.
+        girth: patch -> (other, start, end): its v in [0, 1] is the other's v in [start, end] where they meet.
+        along: patch -> other patch with the same u (a topsides patch and the patch below it).
         source: where the shape comes from.
     """
 
@@ -65,7 +68,9 @@ class ParentHull:
     shift_frame: ShiftFrame
     underwater: Mapping[str, NurbsSurface]
     topsides: Mapping[str, NurbsSurface]
-    caps: tuple[str, ...] = ()
+    caps: tuple[tuple[str, str], ...] = ()
+    girth: Mapping[str, tuple[str, float, float]] = field(default_factory=dict)
+    along: Mapping[str, str] = field(default_factory=dict)
     source: str = ""
     _points: dict[tuple[str, bytes, bytes], Array] = field(default_factory=dict, repr=False)
 
@@ -386,7 +391,9 @@ def parent_hull_from_dict(data: dict[str, Any]) -> ParentHull:
             ),
             underwater=groups["underwater"],
             topsides=groups["topsides"],
-            caps=tuple(data.get("caps", ())),
+            caps=tuple((str(name), str(end)) for name, end in data.get("caps", ())),
+            girth={name: (str(g[0]), float(g[1]), float(g[2])) for name, g in data.get("girth", {}).items()},
+            along={str(name): str(other) for name, other in data.get("along", {}).items()},
             source=str(data.get("source", "")),
         )
     except (KeyError, TypeError, ValueError) as problem:

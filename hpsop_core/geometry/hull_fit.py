@@ -179,6 +179,7 @@ def fit_patch(
     samples: int = 81,
     rounds: int = 4,
     smoothing: float = 2e-3,
+    least_half_breadth: float = 2e-3,
 ) -> PatchFit:
     """Fit y and z of a control net to sections by least squares with parameter correction.
 
@@ -190,6 +191,7 @@ def fit_patch(
         samples: points a section is resampled to at equal chord length.
         rounds: corrections of v by projection.
         smoothing: weight of the second differences of the net; it only decides what the points leave open.
+        least_half_breadth: free control points keep this distance from the centreplane, m: the sides never cross.
 
     Returns:
         The surface and the deviation of the given points.
@@ -215,8 +217,10 @@ def fit_patch(
         design = sparse.diags(weight) @ _row_kronecker(left, basis_matrix(knots_v, DEGREE, v))
         for axis, fixed in ((0, fixed_y), (1, fixed_z)):
             net[..., axis + 1] = _solve(design, weight * points[:, axis], rough, fixed)
+        net[..., 1] = np.where(np.isnan(fixed_y), np.maximum(net[..., 1], least_half_breadth), net[..., 1])
         surface = NurbsSurface(DEGREE, DEGREE, stations.knots, knots_v, net, np.ones((nu, nv)))
-    assert surface is not None
+    if surface is None:
+        raise ValueError("a fit needs at least one round")
     given = len(sections) * samples
     return _deviation(surface, u[given:], v[given:], points[given:], pinned[given:])
 

@@ -83,8 +83,9 @@ class DtcData:
         Raises:
             OSError, ValueError: a file is missing or not a table.
         """
-        rows = np.loadtxt([line for line in offsets.read_text().splitlines() if line[:1].isdigit() or line[:1] == "-"],
-                          delimiter=",")
+        rows = np.loadtxt(
+            [line for line in offsets.read_text().splitlines() if line[:1].isdigit() or line[:1] == "-"], delimiter=","
+        )
         x, z = np.unique(rows[:, 0]), np.unique(rows[:, 1])
         table = np.zeros((len(x), len(z)))
         table[np.searchsorted(x, rows[:, 0]), np.searchsorted(z, rows[:, 1])] = rows[:, 2]
@@ -224,13 +225,15 @@ def topsides_sections(data: DtcData, start: float, end: float) -> list[Section]:
     return result
 
 
-def fit_underwater(data: DtcData) -> dict[str, PatchFit]:
-    """The four patches below the design waterline."""
+def fit_underwater(data: DtcData) -> tuple[dict[str, PatchFit], dict[str, list[Any]]]:
+    """The four patches below the design waterline, and which stretch of the main patch's v each one's v is."""
     fits: dict[str, PatchFit] = {}
     aperture, post_start, post_end = aperture_section(data)
     stations = StationMap.through(MAIN_STATIONS, True, True)
-    girth = sorted([k for k in MAIN_GIRTH if abs(k - post_start) > 0.02 and not post_start <= k <= post_end + 0.02]
-                   + [post_start - 0.015, post_start, post_end, post_end + 0.02])
+    girth = sorted(
+        [k for k in MAIN_GIRTH if abs(k - post_start) > 0.02 and not post_start <= k <= post_end + 0.02]
+        + [post_start - 0.015, post_start, post_end, post_end + 0.02]
+    )
     knots = knots_at(girth)
     fixed_y, fixed_z = free_net(stations, knots)
     fixed_y[:, 0] = 0.0
@@ -263,11 +266,17 @@ def fit_underwater(data: DtcData) -> dict[str, PatchFit]:
     fixed_y[0], fixed_z[0] = net[-1, :, 1], net[-1, :, 2]
     fixed_y[-1], fixed_z[-1] = 0.0, float(data.lines["keel"](NOSE_X))
     fits["bulb"] = fit_patch(bulb_sections(data), stations, knots, fixed_y, fixed_z)
-    return fits
+    girth_of = {
+        "main": ["main", 0.0, 1.0],
+        "counter": ["main", post_end, 1.0],
+        "skeg": ["main", 0.0, post_start],
+        "bulb": ["main", 0.0, 1.0],
+    }
+    return fits, girth_of
 
 
-def fit_topsides(data: DtcData, under: dict[str, PatchFit]) -> dict[str, PatchFit]:
-    """The four patches between the design waterline and the deck."""
+def fit_topsides(data: DtcData, under: dict[str, PatchFit]) -> tuple[dict[str, PatchFit], dict[str, list[Any]]]:
+    """The four patches between the design waterline and the deck, and whose v each one's v is."""
     fits: dict[str, PatchFit] = {}
     stem = (float(data.lines["stem"](STEM_X)) - WATERLINE) / np.hypot(DECK - WATERLINE, float(data.column(STEM_X)[-1]))
     girth = sorted([k for k in TOPSIDES_GIRTH if abs(k - stem) > 0.025] + [float(stem)])
@@ -303,20 +312,26 @@ def fit_topsides(data: DtcData, under: dict[str, PatchFit]) -> dict[str, PatchFi
     fixed_y[0], fixed_z[0] = edge[:, 1], edge[:, 2]
     fixed_y[-1], fixed_z[-1] = 0.0, DECK
     fits["topsides_bow"] = fit_patch(topsides_sections(data, STEM_X, NOSE_X)[1:], stations, knots_b, fixed_y, fixed_z)
-    return fits
+    girth_of: dict[str, list[Any]] = {name: ["topsides_mid", 0.0, 1.0] for name in fits}
+    girth_of["topsides_bow"] = ["topsides_mid", float(stem), 1.0]
+    return fits, girth_of
 
 
 def fitted_hull(data: DtcData) -> dict[str, Any]:
     """The whole hull as plain data for JSON, with the deviations of every patch."""
-    under = fit_underwater(data)
-    above = fit_topsides(data, under)
+    under, girth_under = fit_underwater(data)
+    above, girth_above = fit_topsides(data, under)
     patches = []
     for group, fits in (("underwater", under), ("topsides", above)):
         for name, fit in fits.items():
             surface = fit.surface.to_geomdl()  # through geomdl, so that what is stored is what exchange files hold
             patches.append(
-                {"name": name, "group": group, "deviation": {k: round(v, 6) for k, v in fit.summary().items()},
-                 **_rounded(NurbsSurface.from_geomdl(surface).to_dict())}
+                {
+                    "name": name,
+                    "group": group,
+                    "deviation": {k: round(v, 6) for k, v in fit.summary().items()},
+                    **_rounded(NurbsSurface.from_geomdl(surface).to_dict()),
+                }
             )
     return {
         "name": "dtc",
@@ -333,7 +348,11 @@ def fitted_hull(data: DtcData) -> dict[str, Any]:
         "shaft_height": SHAFT_HEIGHT,
         "boss_end_x": BOSS_X,
         "shift": {"aft": 18.0, "middle": 168.0, "forward": 348.0},
-        "caps": ["skeg"],
+        # Flat faces: from an end (first or last u) of a patch straight to the centreplane.
+        "caps": [["skeg", "first"], ["topsides_stern", "first"]],
+        # Which stretch of another patch's v a patch's v is, and whose u it shares: meshes meet along these.
+        "girth": girth_under | girth_above,
+        "along": {"topsides_mid": "main", "topsides_aft": "counter"},
         "patches": patches,
     }
 
