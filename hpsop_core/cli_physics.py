@@ -235,7 +235,7 @@ def _open_water(arguments: argparse.Namespace) -> int:
             MODEL_TEST[1] if rate is None else rate, MODEL_TEST[2] if viscosity is None else viscosity
         )
     result = solve_open_water(propeller, arguments.level, advance, drag)
-    points = []
+    points: list[dict[str, Any]] = []
     for j, kt, kq in zip(advance, result.thrust_coefficient, result.torque_coefficient, strict=True):
         points.append(
             {

@@ -75,7 +75,8 @@ class Reference:
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Reference:
         """The reference that ``as_dict`` described, to the last bit."""
-        return cls(**{key: tuple(value) if isinstance(value, list) else value for key, value in data.items()})
+        values: dict[str, Any] = {key: tuple(v) if isinstance(v, list) else v for key, v in data.items()}
+        return cls(**values)
 
     def calibration_at(self, froude_number: float) -> float:
         """The factor at any Froude number: linear between the conditions, constant outside."""

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import numpy as np
+from scipy.spatial import cKDTree
 
 from hpsop_core.geometry.hull import Hull
 from hpsop_core.geometry.propeller import Propeller
@@ -43,19 +44,16 @@ def propeller_clearance(hull: Hull, propeller: Propeller) -> float:
     half_breadth = np.interp(circle[:, 2], table.z, section, left=0.0, right=section[-1])
     inside = (half_breadth > np.abs(circle[:, 1])) & (circle[:, 2] > 0.0)
     parameters = np.linspace(0.0, 1.0, SAMPLES)
-    nearest = np.inf
-    for patch in hull.patches:
-        if not patch.underwater:
-            continue
-        points = patch.evaluate(parameters, parameters).reshape(-1, 3)
-        near = points[np.abs(points[:, 0] - circle[0, 0]) < propeller.diameter]
-        if len(near):
-            # The hull is symmetric: its port half and the tip's mirror image give the same distances.
-            gap = near[None, :, :] - np.stack([circle[:, 0], np.abs(circle[:, 1]), circle[:, 2]], axis=1)[:, None, :]
-            nearest = min(nearest, float(np.sqrt((gap**2).sum(axis=2)).min()))
+    samples = np.concatenate([
+        patch.evaluate(parameters, parameters).reshape(-1, 3) for patch in hull.patches if patch.underwater
+    ])
+    near = samples[np.abs(samples[:, 0] - circle[0, 0]) < propeller.diameter]
+    # The hull is symmetric: its port half and the tip's mirror image give the same distances.
+    mirrored = np.stack([circle[:, 0], np.abs(circle[:, 1]), circle[:, 2]], axis=1)
+    nearest = float(cKDTree(near).query(mirrored)[0].min()) if len(near) else float(propeller.diameter)
     return -nearest if np.any(inside) else nearest
 
 
 def baseline_clearance(hull: Hull, propeller: Propeller) -> float:
-    """Height of the lowest blade tip above the baseline in m; negative where the propeller would be the lowest point."""
+    """Height of the lowest blade tip above the baseline in m; negative where the blades reach below it."""
     return hull.shaft_height - 0.5 * propeller.diameter

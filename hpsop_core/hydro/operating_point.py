@@ -11,7 +11,7 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
-from scipy.interpolate import BarycentricInterpolator
+from numpy.polynomial import chebyshev
 from scipy.optimize import brentq
 
 from hpsop_core.errors import SolverFailure
@@ -43,12 +43,19 @@ class PropellerCurve:
         values = np.stack([self.thrust_coefficient, self.torque_coefficient], axis=1)
         if not np.all(np.isfinite(values)):
             raise SolverFailure("operating_point", "the open-water curve holds a number that is not finite")
-        object.__setattr__(self, "_polynomial", BarycentricInterpolator(self.advance_coefficient, values))
+        nodes = self._unit_interval(self.advance_coefficient)
+        series = np.linalg.solve(chebyshev.chebvander(nodes, len(nodes) - 1), values)
+        object.__setattr__(self, "_series", series)
+
+    def _unit_interval(self, advance_coefficient: Array) -> Array:
+        lower, upper = self.range
+        return (2.0 * advance_coefficient - lower - upper) / (upper - lower)
 
     def coefficients(self, advance_coefficient: Array | float) -> tuple[Array, Array]:
         """KT and KQ at J inside the nodes' range, each of J's shape."""
-        values = self._polynomial(np.asarray(advance_coefficient, dtype=float))  # type: ignore[attr-defined]
-        return values[..., 0], values[..., 1]
+        place = self._unit_interval(np.asarray(advance_coefficient, dtype=float))
+        series: Array = self._series  # type: ignore[attr-defined]
+        return np.asarray(chebyshev.chebval(place, series[:, 0])), np.asarray(chebyshev.chebval(place, series[:, 1]))
 
     @property
     def range(self) -> tuple[float, float]:
