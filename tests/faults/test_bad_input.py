@@ -13,7 +13,7 @@ PAPER = read_asset_text("cases", "dtc-p4119-paper.toml")
 
 # (what is replaced in the shipped case, by what, words that the message must hold)
 BAD_CASES = {
-    "unknown key": ("form_factor = 0.0", "form_facter = 0.0", ("constants", "form_facter", "did you mean 'form_factor'")),
+    "unknown key": ("form_factor = 0.0", "form_facter = 0.0", ("constants", "did you mean 'form_factor'")),
     "unknown table": ("[objectives]", "[objectifs]", ("objectifs", "did you mean 'objectives'")),
     "reversed bounds": ("draft = [14.0, 14.5]", "draft = [14.5, 14.0]", ("bounds", "draft", "reversed")),
     "NaN": ("form_factor = 0.0", "form_factor = nan", ("form_factor", "finite")),
