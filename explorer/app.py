@@ -1,0 +1,233 @@
+"""`hpsop-explore`: the page on a case or a run."""
+
+from __future__ import annotations
+
+import argparse
+import contextlib
+import json
+import logging
+import os
+import signal
+import sys
+import threading
+import webbrowser
+from collections.abc import Sequence
+from importlib.resources import as_file
+from pathlib import Path
+
+import viser
+
+from explorer.draft import Draft
+from explorer.layout import build_session, build_shared
+from explorer.library import RunLibrary, runs_folder
+from explorer.run_picture import RunPicture
+from explorer.security import free_port, secure_server
+from explorer.services import Services
+from explorer.state import AppState, Hub, Session
+from explorer.worker import LatestWorker
+from hpsop_core.assets import asset_path
+from hpsop_core.case import DEFAULT_CASE, Case, load_case
+from hpsop_core.errors import HpsopError, InputError
+
+_MEMORY_FILE = "browsers.json"
+
+
+class Explorer:
+    """The page: a server, the shared state, and a session for each browser.
+
+    Args:
+        case: what is set up at first.
+        run: a run file to show, or None.
+        read_only: of that run.
+        host, port: where to listen; the port must be free.
+        folder: of the user's runs.
+        workers: processes of a run.
+
+    Raises:
+        InputError: the run file or the address cannot be used.
+    """
+
+    def __init__(
+        self,
+        case: Case,
+        run: Path | None = None,
+        read_only: bool = False,
+        host: str = "127.0.0.1",
+        port: int = 8080,
+        folder: Path | None = None,
+        workers: int | None = None,
+    ) -> None:
+        self.folder = folder or runs_folder()
+        self.address = f"http://{'localhost' if host in ('0.0.0.0', '::') else host}:{port}"
+        draft = Draft(case)
+        worker = LatestWorker("shared")
+        self.services = Services(RunLibrary(self.folder), draft, workers)
+        self.state = AppState(draft, worker, Hub(worker), RunPicture("", case), self.services)
+        self.services.attach(self.state)
+        self._load_memory()
+        if run is not None:
+            self.services.open(run, read_only)
+        self.server = secure_server(host, port, "hpsop")
+        self.state.hub.on(("draft",), self.services.draft_changed)
+        self.state.on_remember = lambda: worker.latest("memory", self._save_memory)
+        self._gone = threading.Event()
+        build_shared(self.state, self.server)
+        self.server.on_client_connect(self._connect)
+        self.server.on_client_disconnect(self._disconnect)
+        # The initial design stands ready when the first browser asks.
+        worker.latest("initial", self._warm_up)
+
+    def _warm_up(self) -> None:
+        try:
+            self.services.initial(self.state.picture.current_level)
+        except HpsopError as error:
+            logging.getLogger("hpsop.explorer").error("the initial design cannot be computed: %s", error)
+
+    def _connect(self, client: viser.ClientHandle) -> None:
+        def notify(title: str, body: str, color: str) -> None:
+            colors = {"red": (201, 42, 42), "yellow": (232, 163, 23), "green": (43, 138, 62)}
+            with contextlib.suppress(RuntimeError):
+                client.add_notification(title, body, auto_close_seconds=8.0, color=colors.get(color, (90, 90, 90)))
+
+        session = Session(self.state, client.client_id, notify)
+        with self.state.lock:
+            self.state.sessions[client.client_id] = session
+        build_session(session, client)
+        self.state.tell_all("people")
+
+    def _disconnect(self, client: viser.ClientHandle) -> None:
+        with self.state.lock:
+            session = self.state.sessions.pop(client.client_id, None)
+        if session is not None:
+            session.close()
+        self.state.tell_all("people")
+
+    # ---- what a reload or a restart brings back --------------------------------------------------------------------
+    def _load_memory(self) -> None:
+        try:
+            stored = json.loads((self.folder / _MEMORY_FILE).read_text(encoding="utf-8"))
+        except (OSError, ValueError):
+            return
+        if isinstance(stored, dict):
+            self.state.memory = {str(key): value for key, value in stored.items() if isinstance(value, dict)}
+
+    def _save_memory(self) -> None:
+        with self.state.lock:
+            text = json.dumps(self.state.memory)
+        with contextlib.suppress(OSError):
+            self.folder.mkdir(parents=True, exist_ok=True)
+            fresh = self.folder / (_MEMORY_FILE + ".new")
+            fresh.write_text(text, encoding="utf-8")
+            os.replace(fresh, self.folder / _MEMORY_FILE)
+
+    def wait(self) -> None:
+        """Until ``close`` or Ctrl-C."""
+        while not self._gone.wait(0.5):
+            pass
+
+    def close(self) -> None:
+        """End the run (its file keeps everything) and the server; no process stays behind."""
+        self._gone.set()
+        self.services.close()
+        with contextlib.suppress(RuntimeError):
+            self.server.stop()
+        self.state.worker.close()
+
+
+def demonstration() -> Path | None:
+    """The shipped finished run, if there is one."""
+    folder = asset_path("demo")
+    names = sorted(item.name for item in folder.iterdir() if item.name.endswith(".hpsop")) if folder.is_dir() else []
+    if not names:
+        return None
+    with as_file(folder / names[0]) as path:
+        # hpsop is installed as plain files; a zipped installation would need a copy that outlives this block
+        return path if path.is_file() else None
+
+
+def _chosen(what: str | None, folder: Path) -> tuple[Case, Path | None, bool]:
+    """(case to set up, run to show, whether it is read-only)."""
+    if what is None:
+        # the newest run of one's own, else the demonstration, else the bare case
+        entries = [entry for entry in RunLibrary(folder).entries() if entry.title != "not readable"]
+        if entries:
+            path = folder / entries[0].name
+            with contextlib.suppress(HpsopError):
+                from hpsop_core.runs.reader import open_run
+
+                return _settings_of(open_run(path).case), path, False
+        shown = demonstration()
+        return load_case(DEFAULT_CASE), shown, shown is not None
+    if what.endswith(".hpsop"):
+        from hpsop_core.runs.reader import open_run
+
+        path = Path(what)
+        return _settings_of(open_run(path).case), path, False
+    return load_case(what), None, False
+
+
+def _settings_of(case: Case) -> Case:
+    """A run's case for setting up the next one: the shipped preset where it is unchanged."""
+    with contextlib.suppress(InputError):
+        preset = load_case(case.name)
+        if preset.bounds == case.bounds and preset.conditions == case.conditions:
+            return preset
+    return case
+
+
+def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
+    class Parser(argparse.ArgumentParser):
+        def error(self, message: str) -> None:  # type: ignore[override]
+            raise InputError(f"hpsop-explore: {message}; see hpsop-explore --help")
+
+    parser = Parser(
+        prog="hpsop-explore", description="The design explorer: optimise a ship and its propeller and watch."
+    )
+    parser.add_argument(
+        "what",
+        nargs="?",
+        metavar="CASE | RUN.hpsop",
+        help="a shipped case, a TOML file or a run; by default your latest run",
+    )
+    parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: this machine only)")
+    parser.add_argument("--port", type=int, default=8080, help="port (default 8080; the next free one if it is busy)")
+    parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
+    parser.add_argument("--workers", type=int, default=None, help="processes of a run (default: all cores)")
+    return parser.parse_args(argv)
+
+
+def main(argv: Sequence[str] | None = None) -> int:
+    """The command; returns the exit status."""
+    logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
+    try:
+        arguments = _arguments(argv)
+        if arguments.workers is not None and arguments.workers < 1:
+            raise InputError(f"--workers {arguments.workers}: give 1 or more")
+        folder = runs_folder()
+        case, run, read_only = _chosen(arguments.what, folder)
+        port = free_port(arguments.host, arguments.port)
+        explorer = Explorer(case, run, read_only, arguments.host, port, folder, arguments.workers)
+    except HpsopError as error:
+        sys.stderr.write(f"{error}\n")
+        return 2
+    if port != arguments.port:
+        sys.stderr.write(f"port {arguments.port} is busy; using {port}\n")
+    if arguments.host not in ("127.0.0.1", "localhost", "::1"):
+        sys.stderr.write("anyone who reaches this address can drive the page: there is no password\n")
+    sys.stdout.write(f"hpsop explorer: {explorer.address}   (Ctrl-C ends it)\n")
+    sys.stdout.flush()
+    signal.signal(signal.SIGTERM, lambda *_: explorer._gone.set())
+    if not arguments.no_browser:
+        with contextlib.suppress(webbrowser.Error):
+            webbrowser.open(explorer.address)
+    try:
+        explorer.wait()
+    except KeyboardInterrupt:
+        sys.stderr.write("\n")
+    finally:
+        explorer.close()
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())

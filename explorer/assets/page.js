@@ -1,0 +1,228 @@
+// The browser's half of explorer/bridge.py. It is installed once per page by an image's error handler (viser inserts
+// HTML without running scripts) and then listens on the document, so charts may be redrawn under the pointer at will.
+// It draws nothing of its own but the rubber band, the tooltip's place and the overlays' frames.
+(function (VERSION) {
+  if (window.hpsop && window.hpsop.version === VERSION) return;
+  if (window.hpsop && window.hpsop.dispose) window.hpsop.dispose();
+  const H = (window.hpsop = { version: VERSION, outbox: [], channelId: null, active: null, sent: 0 });
+  const disposers = [];
+  H.dispose = () => disposers.forEach((f) => f());
+  const listen = (target, type, handler, options) => {
+    target.addEventListener(type, handler, options);
+    disposers.push(() => target.removeEventListener(type, handler, options));
+  };
+
+  // ---- messages to Python: a hidden text input whose value is a JSON list of the latest events -------------------
+  let sequence = Date.now() * 8;
+  let timer = null;
+  let dirty = false;
+  const input = () => {
+    const label = H.channelId && document.querySelector('label[for="' + H.channelId + '"]');
+    for (let node = label; node; node = node.parentElement) {
+      const found = node.querySelector("input, textarea");
+      if (found) return found;
+    }
+    return null;
+  };
+  function flush() {
+    timer = null;
+    if (!dirty) return;
+    const field = input();
+    if (!field) { timer = setTimeout(flush, 100); return; }
+    dirty = false;
+    const prototype = field.tagName === "TEXTAREA" ? HTMLTextAreaElement.prototype : HTMLInputElement.prototype;
+    Object.getOwnPropertyDescriptor(prototype, "value").set.call(field, JSON.stringify(H.outbox));
+    field.dispatchEvent(new Event("input", { bubbles: true }));
+    timer = setTimeout(flush, 60);
+  }
+  // Actions are repeated in the next messages (viser keeps only the newest of a burst); Python drops what it has seen.
+  H.send = function (event) {
+    event.n = ++sequence;
+    if (event.soft) H.outbox = H.outbox.filter((old) => !(old.soft && old.t === event.t && old.chart === event.chart));
+    H.outbox.push(event);
+    if (H.outbox.length > 8) H.outbox.splice(0, H.outbox.length - 8);
+    dirty = true;
+    if (!timer) flush();
+  };
+  const storage = (() => { try { return window.sessionStorage; } catch (e) { return null; } })();
+  H.browser = (storage && storage.getItem("hpsop-browser")) ||
+    Array.from(crypto.getRandomValues(new Uint8Array(12)), (b) => b.toString(16).padStart(2, "0")).join("");
+  if (storage) storage.setItem("hpsop-browser", H.browser);
+  H.connect = function (channelId) {
+    if (H.channelId !== channelId) { H.channelId = channelId; H.outbox = []; }
+    H.send({ t: "hello", browser: H.browser, width: innerWidth, height: innerHeight });
+    place();
+  };
+
+  // ---- charts --------------------------------------------------------------------------------------------------
+  const chartOf = (node) => (node && node.closest ? node.closest("svg[data-chart]") : null);
+  function point(svg, event) {
+    const box = svg.getBoundingClientRect();
+    const view = svg.viewBox.baseVal;
+    const u = ((event.clientX - box.left) / box.width) * view.width;
+    const v = ((event.clientY - box.top) / box.height) * view.height;
+    const [px, py, pw, ph] = svg.dataset.plot.split(",").map(Number);
+    const [x0, x1, y0, y1] = svg.dataset.limits.split(",").map(Number);
+    const fx = (u - px) / pw;
+    const fy = 1 - (v - py) / ph;
+    return { u, v, fx, fy, x: x0 + fx * (x1 - x0), y: y0 + fy * (y1 - y0), inside: fx >= -0.02 && fx <= 1.02 && fy >= -0.02 && fy <= 1.02 };
+  }
+  const band = document.createElement("div");
+  band.className = "hpsop-band";
+  document.body.appendChild(band);
+  disposers.push(() => band.remove());
+  let drag = null;
+  let swallowClick = false;
+  listen(document, "pointerdown", (event) => {
+    const svg = chartOf(event.target);
+    H.active = svg ? svg.dataset.chart : null;
+    if (!svg || event.button !== 0) return;
+    const p = point(svg, event);
+    const mode = event.shiftKey && svg.dataset.box ? "box" : svg.dataset.drag || "none";
+    drag = { chart: svg.dataset.chart, mode, x: event.clientX, y: event.clientY, last: p, start: p, moved: false, box: svg.getBoundingClientRect(), plot: svg.dataset.plot, limits: svg.dataset.limits };
+    if (mode !== "none") event.preventDefault();
+  }, true);
+  let hovered = null;
+  listen(document, "pointermove", (event) => {
+    if (drag) {
+      if (Math.abs(event.clientX - drag.x) + Math.abs(event.clientY - drag.y) > 4) drag.moved = true;
+      const svg = document.querySelector('svg[data-chart="' + drag.chart + '"]');
+      if (!svg || !drag.moved) return;
+      const p = point(svg, event);
+      if (drag.mode === "pan") {
+        // fractions of the plot do not change while it is redrawn with other limits
+        H.send({ t: "pan", chart: drag.chart, fx: p.fx - drag.start.fx, fy: p.fy - drag.start.fy, from: drag.limits.split(",").map(Number), soft: 1 });
+        hideTip();
+      } else if (drag.mode === "box" || drag.mode === "brush") {
+        const wide = drag.mode === "brush";
+        const half = 7;
+        band.style.display = "block";
+        band.style.left = (wide ? drag.x - half : Math.min(drag.x, event.clientX)) + "px";
+        band.style.width = (wide ? 2 * half : Math.abs(event.clientX - drag.x)) + "px";
+        band.style.top = Math.min(drag.y, event.clientY) + "px";
+        band.style.height = Math.abs(event.clientY - drag.y) + "px";
+      }
+      return;
+    }
+    const svg = chartOf(event.target);
+    if (!svg || !svg.dataset.hover) {
+      if (hovered) { hovered = null; hideTip(); }
+      return;
+    }
+    hovered = svg.dataset.chart;
+    H.pointer = [event.clientX, event.clientY];
+    const p = point(svg, event);
+    if (p.inside) H.send({ t: "hover", chart: hovered, x: p.x, y: p.y, fx: p.fx, fy: p.fy, soft: 1 });
+    else hideTip();
+  }, true);
+  listen(document, "pointerup", (event) => {
+    if (!drag) return;
+    const done = drag;
+    drag = null;
+    band.style.display = "none";
+    const svg = document.querySelector('svg[data-chart="' + done.chart + '"]');
+    if (!svg) return;
+    const p = point(svg, event);
+    if (done.moved && done.mode !== "none") {
+      swallowClick = true;
+      setTimeout(() => { swallowClick = false; }, 0);
+      if (done.mode === "box" || done.mode === "brush")
+        H.send({ t: done.mode, chart: done.chart, x0: done.start.x, y0: done.start.y, x1: p.x, y1: p.y, fx0: done.start.fx, fy0: done.start.fy, fx1: p.fx, fy1: p.fy });
+    } else if (svg.dataset.click && event.button === 0) {
+      H.send({ t: "click", chart: done.chart, x: p.x, y: p.y, fx: p.fx, fy: p.fy, shift: event.shiftKey, twice: event.detail > 1 });
+    }
+  }, true);
+  listen(document, "click", (event) => {
+    if (swallowClick) return;
+    const button = event.target.closest ? event.target.closest("[data-act]") : null;
+    if (!button || button.getAttribute("aria-disabled") === "true") return;
+    if (button.dataset.local === "screenshot") return screenshot();
+    H.send({ t: "act", name: button.dataset.act, arg: button.dataset.arg || "", shift: event.shiftKey });
+  }, true);
+  listen(document, "dblclick", (event) => {
+    const svg = chartOf(event.target);
+    if (svg && svg.dataset.drag) H.send({ t: "reset", chart: svg.dataset.chart });
+  }, true);
+  listen(document, "wheel", (event) => {
+    const svg = chartOf(event.target);
+    if (!svg || svg.dataset.drag !== "pan") return;
+    const p = point(svg, event);
+    if (!p.inside) return;
+    event.preventDefault();
+    event.stopPropagation();
+    hideTip();
+    H.send({ t: "zoom", chart: svg.dataset.chart, x: p.x, y: p.y, factor: Math.exp(Math.max(-1, Math.min(1, event.deltaY / 400))) });
+  }, { capture: true, passive: false });
+  listen(document, "keydown", (event) => {
+    const target = event.target;
+    if (target.closest && target.closest("input, textarea, [contenteditable], [role=slider], [role=combobox]")) return;
+    if (event.ctrlKey || event.metaKey || event.altKey) return;
+    const arrows = ["ArrowLeft", "ArrowRight", "Home", "End", "Escape"].includes(event.key) && (H.active || hovered);
+    if (!arrows && !["[", "]"].includes(event.key)) return;
+    event.preventDefault();
+    event.stopPropagation();
+    H.send({ t: "key", key: event.key, chart: H.active || hovered || "" });
+  }, true);
+
+  // ---- tooltip ---------------------------------------------------------------------------------------------------
+  const tip = document.createElement("div");
+  tip.className = "hpsop-tip";
+  document.body.appendChild(tip);
+  disposers.push(() => tip.remove());
+  function hideTip() { tip.style.display = "none"; }
+  H.tip = function (marker) {
+    const source = marker.previousElementSibling;
+    marker.remove();
+    if (!source || !hovered || source.dataset.chart !== hovered || drag) return hideTip();
+    if (!source.innerHTML.trim()) return hideTip();
+    tip.innerHTML = source.innerHTML;
+    tip.style.display = "block";
+    const [x, y] = H.pointer || [0, 0];
+    const w = tip.offsetWidth, h = tip.offsetHeight;
+    tip.style.left = Math.max(4, x - w - 16 > 4 ? x - w - 16 : Math.min(x + 16, innerWidth - w - 4)) + "px";
+    tip.style.top = Math.max(4, Math.min(y - h / 2, innerHeight - h - 4)) + "px";
+  };
+
+  // ---- overlays: pieces of HTML that stand over the 3D view instead of in a panel ---------------------------------
+  const frames = {};
+  H.overlay = function (marker) {
+    const source = marker.previousElementSibling;
+    marker.remove();
+    if (!source) return;
+    const name = source.dataset.overlay;
+    if (!frames[name]) {
+      frames[name] = document.createElement("div");
+      frames[name].className = "hpsop-overlay hpsop-overlay-" + name;
+      document.body.appendChild(frames[name]);
+      disposers.push(() => frames[name].remove());
+    }
+    frames[name].innerHTML = source.innerHTML;
+    frames[name].style.display = source.innerHTML.trim() ? "block" : "none";
+    place();
+  };
+  function place() {
+    // The 3D view is what the docks leave free: walk in from both sides along the middle line of the window.
+    const canvas = document.querySelector("canvas");
+    if (!canvas) return;
+    const box = canvas.getBoundingClientRect();
+    let left = box.left, right = box.right;
+    document.querySelectorAll("label[for], .hpsop-root").forEach((node) => {
+      const r = node.getBoundingClientRect();
+      if (r.width === 0) return;
+      const panel = node.closest("[data-hpsop-panel]") || node;
+      const q = panel.getBoundingClientRect();
+      if (q.left < innerWidth / 3 && q.right < innerWidth / 2) left = Math.max(left, q.right + 10);
+      if (q.right > (2 * innerWidth) / 3 && q.left > innerWidth / 2) right = Math.min(right, q.left - 10);
+    });
+    document.documentElement.style.setProperty("--hpsop-left", left + "px");
+    document.documentElement.style.setProperty("--hpsop-right", innerWidth - right + "px");
+  }
+  const ticker = setInterval(place, 700);
+  disposers.push(() => clearInterval(ticker));
+  let resizeTimer = null;
+  listen(window, "resize", () => {
+    clearTimeout(resizeTimer);
+    resizeTimer = setTimeout(() => { place(); H.send({ t: "size", width: innerWidth, height: innerHeight }); }, 200);
+  });
+  function screenshot() { H.send({ t: "act", name: "screenshot", arg: "" }); }
+})

@@ -1,0 +1,150 @@
+"""What happens in the browser, told to Python: clicks, hovers, drags and keys on charts drawn as SVG.
+
+viser 1.1.1 sends no event from its own plots. What does work (measured, and guarded by tests/browser/test_bridge.py):
+``gui.add_html`` inserts HTML whose inline handlers run, and a hidden ``gui.add_text`` carries a text to Python when its
+input element is set and an ``input`` event dispatched. ``assets/page.js`` does both; this module is its other end.
+
+The text is a JSON list of the latest events, each with a rising number ``n``, because viser passes on only the newest of
+a burst: what was dropped comes again with the next message, and what was seen before is skipped here. Everything that
+arrives is checked: a browser may send anything.
+"""
+
+from __future__ import annotations
+
+import html
+import json
+import math
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from importlib.resources import files
+from typing import Any
+
+import viser
+
+PAGE_VERSION = "1"
+_MAX_MESSAGE = 6000
+_NUMBERS = ("x", "y", "fx", "fy", "x0", "x1", "y0", "y1", "fx0", "fx1", "fy0", "fy1", "factor", "width", "height")
+_TEXTS = ("t", "chart", "name", "arg", "key", "browser")
+
+
+@dataclass(frozen=True)
+class PageEvent:
+    """One gesture.
+
+    Attributes:
+        kind: hello, size, click, hover, pan, zoom, box, brush, reset, act or key.
+        chart: the chart it happened on, or "".
+        name, arg: of a pressed button (kind "act").
+        key: of the keyboard.
+        numbers: finite numbers by name: x, y in the chart's data, fx, fy in fractions of its plot area.
+        origin: the limits (x0, x1, y0, y1) that a pan started from.
+        shift: whether Shift was held.
+        browser: the browser's own name for itself (hello only).
+    """
+
+    kind: str
+    chart: str = ""
+    name: str = ""
+    arg: str = ""
+    key: str = ""
+    numbers: dict[str, float] = field(default_factory=dict)
+    origin: tuple[float, float, float, float] | None = None
+    shift: bool = False
+    browser: str = ""
+
+
+def _finite(value: object) -> float | None:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+        return None
+    return float(value)
+
+
+def parse_events(text: object, seen: int) -> tuple[list[PageEvent], int]:
+    """Events newer than ``seen`` from what the browser sent, and the newest number; nonsense gives no events."""
+    if not isinstance(text, str) or not text or len(text) > _MAX_MESSAGE:
+        return [], seen
+    try:
+        raw = json.loads(text)
+    except (ValueError, RecursionError):
+        return [], seen
+    if not isinstance(raw, list):
+        return [], seen
+    events = []
+    newest = seen
+    for item in raw:
+        if not isinstance(item, dict):
+            continue
+        number = _finite(item.get("n"))
+        if number is None or number <= seen or number > 2**53:
+            continue
+        newest = max(newest, int(number))
+        texts = {name: str(item.get(name, ""))[:200] for name in _TEXTS}
+        origin = item.get("from")
+        limits: tuple[float, float, float, float] | None = None
+        if isinstance(origin, list) and len(origin) == 4:
+            numbers = [_finite(value) for value in origin]
+            if all(value is not None for value in numbers):
+                limits = tuple(value for value in numbers if value is not None)  # type: ignore[assignment]
+        events.append(
+            PageEvent(
+                kind=texts["t"],
+                chart=texts["chart"],
+                name=texts["name"],
+                arg=texts["arg"],
+                key=texts["key"],
+                numbers={name: value for name in _NUMBERS if (value := _finite(item.get(name))) is not None},
+                origin=limits,
+                shift=item.get("shift") is True,
+                browser=texts["browser"],
+            )
+        )
+    return events, newest
+
+
+class Bridge:
+    """The hidden channel of one browser.
+
+    Args:
+        gui: where the hidden elements go: a container of this client that is always mounted.
+        receive: called with every event, in order, from one of viser's threads.
+    """
+
+    def __init__(self, gui: viser.GuiApi, receive: Callable[[PageEvent], None]) -> None:
+        self._receive = receive
+        self._seen = 0
+        self._channel = gui.add_text("hpsop channel", "")
+        uuid = self._channel._impl.uuid
+        script = html.escape(f"({_asset('page.js')})('{PAGE_VERSION}'); window.hpsop.connect('{uuid}')", quote=True)
+        hide_row = f'div:has(> div > * > * > label[for="{uuid}"]){{display:none!important}}'
+        gui.add_html(
+            f'<div class="hpsop-root"></div><style>{_asset("page.css")}\n{hide_row}</style>'
+            f'<img alt="" style="display:none" src="data:," onerror="{script}">'
+        )
+        self._channel.on_update(self._on_update)
+
+    def _on_update(self, event: viser.GuiEvent[Any]) -> None:
+        if event.client_id is None:
+            return
+        events, self._seen = parse_events(self._channel.value, self._seen)
+        for item in events:
+            self._receive(item)
+
+
+def overlay(name: str, content: str) -> str:
+    """HTML that the browser lifts out of its panel and lays over the 3D view."""
+    return (
+        f'<div data-overlay="{name}" style="display:none">{content}</div>'
+        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.overlay(this)">'
+    )
+
+
+def tooltip(chart: str, content: str, serial: int) -> str:
+    """HTML that the browser shows beside the pointer while it rests on ``chart``."""
+    return (
+        f'<div data-chart="{chart}" data-serial="{serial}" style="display:none">{content}</div>'
+        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.tip(this)">'
+    )
+
+
+def _asset(name: str) -> str:
+    return (files("explorer") / "assets" / name).read_text(encoding="utf-8")

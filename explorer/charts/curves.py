@@ -1,0 +1,333 @@
+"""Charts of designs: open water, resistance, thrust, body plan, sectional areas, convergence."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass, field
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explorer.charts.plot import Plot, legend, padded
+from hpsop_core.evaluation_result import Evaluation
+
+Array = NDArray[np.float64]
+_SUBSCRIPTS = "₁₂₃₄"
+
+
+@dataclass(frozen=True)
+class Series:
+    """A design on a chart: its name, CSS colour class and dash class."""
+
+    name: str
+    css: str
+    dash: str = ""
+
+
+@dataclass(frozen=True)
+class DesignCurves:
+    """What is computed for a shown design beyond its evaluation.
+
+    Attributes:
+        froude_number: (n,) on the design's own length.
+        speed: (n,) m/s.
+        total_resistance, wave_resistance: (n,) N.
+        thrust_required: (n,) N: Rt/(1 - t).
+        thrust_available: for each condition (n,) N: what the propeller gives at that condition's rate of rotation.
+        level: of the resistance.
+    """
+
+    froude_number: Array
+    speed: Array
+    total_resistance: Array
+    wave_resistance: Array
+    thrust_required: Array
+    thrust_available: tuple[Array, ...]
+    level: int
+
+
+@dataclass(frozen=True)
+class HullLines:
+    """Sections and areas of a hull.
+
+    Attributes:
+        sections: (station number 0 at AP to 20 at FP, polylines of (y, z) in m, port side).
+        area_x: (n,) x/Lpp from AP; area: (n,) m2.
+        draft: m.
+    """
+
+    sections: tuple[tuple[float, tuple[Array, ...]], ...]
+    area_x: Array
+    area: Array
+    draft: float
+    length: float = field(default=1.0)
+
+
+def open_water_chart(designs: Sequence[tuple[Series, Evaluation]], width: float, height: float) -> str:
+    """KT, 10KQ and efficiency against J, the required KT of each condition, and the operating points."""
+    curves = [(series, item.open_water, item) for series, item in designs if item.open_water is not None]
+    longest = max((max(curve.advance_coefficient) for _, curve, _ in curves), default=1.2)
+    top = 0.9
+    for _, curve, _ in curves:
+        top = max(top, 1.04 * max(curve.open_water_efficiency), 10.4 * max(curve.torque_coefficient))
+    plot = Plot(
+        width,
+        height,
+        (0.0, longest),
+        (0.0, min(top, 1.4)),
+        "advance coefficient J [–]",
+        "KT, 10KQ, η₀ [–]",
+        margins=(48, 12, 8, 34),
+    )
+    if not curves:
+        plot.message("no open-water curves for this design")
+    for index, (series, curve, evaluation) in enumerate(curves):
+        j = np.asarray(curve.advance_coefficient)
+        kt, kq = np.asarray(curve.thrust_coefficient), 10.0 * np.asarray(curve.torque_coefficient)
+        eta = np.asarray(curve.open_water_efficiency)
+        eta = np.where(kt > 0.0, eta, np.nan)
+        css = f"{series.css} {series.dash}"
+        for values, word in ((kt, "KT"), (kq, "10KQ"), (eta, "η₀")):
+            plot.line(j, values, css, title=f"{word}, {series.name}")
+        main = index == len(curves) - 1
+        if main:
+            at = max(int(len(j) * 0.14), 0)
+            plot.text(j[at], kt[at], "KT", dy=12)
+            plot.text(j[at], kq[at], "10KQ", dy=-6)
+            finite = np.flatnonzero(np.isfinite(eta))
+            if finite.size:
+                best = finite[len(finite) // 3]
+                plot.text(j[best], eta[best], "η₀", dx=-6, dy=-6, anchor="end")
+        for number, condition in enumerate(evaluation.conditions):
+            if not condition.advance_coefficient > 0.0:
+                continue
+            needed = condition.thrust_coefficient / condition.advance_coefficient**2 * j**2
+            # The parabola matters near its intersection; further up it only crosses other curves.
+            needed = np.where(needed <= plot.y_limits[1], needed, np.nan)
+            if main or series.name == "initial":
+                plot.line(j, needed, f"required {series.css}", title=f"required KT, condition {number + 1}")
+            plot.mark(
+                condition.advance_coefficient,
+                condition.thrust_coefficient,
+                "circle",
+                3.6,
+                _solid(series.css),
+                title=f"{series.name}: J{_SUBSCRIPTS[number]} "
+                f"{condition.advance_coefficient:.4f}, KT {condition.thrust_coefficient:.4f}",
+            )
+            plot.mark(
+                condition.advance_coefficient,
+                condition.open_water_efficiency,
+                "circle",
+                2.8,
+                _solid(series.css),
+                title=f"η₀ {condition.open_water_efficiency:.4f}",
+            )
+            if main:
+                plot.text(condition.advance_coefficient, 0.0, f"J{_SUBSCRIPTS[number]}", "soft", "middle", dy=-4)
+                plot.raw(
+                    f'<path d="M{float(plot.px(condition.advance_coefficient)):.1f} '
+                    f'{float(plot.py(condition.thrust_coefficient)):.1f}V{plot.height - 50:.1f}" class="guide"/>'
+                )
+    keys = [("line", f"{series.css} {series.dash}", series.name) for series, _, _ in curves]
+    keys.append(("dash", "required", "required KT"))
+    return plot.svg("open_water") + legend(keys)
+
+
+def _solid(css: str) -> str:
+    return "selected-solid" if css == "selected" else css
+
+
+def resistance_chart(
+    designs: Sequence[tuple[Series, Evaluation, DesignCurves]], which: str, width: float, height: float
+) -> str:
+    """Wave ("wave") or total ("total") resistance against Froude number (the paper's figures 6 and 7)."""
+    word = "wave resistance Rw [MN]" if which == "wave" else "total resistance Rt [MN]"
+
+    def values(curves: DesignCurves) -> Array:
+        return 1e-6 * (curves.wave_resistance if which == "wave" else curves.total_resistance)
+
+    x = [curves.froude_number for _, _, curves in designs]
+    y = [values(curves) for _, _, curves in designs]
+    x_limits = padded(np.concatenate(x), 0.0) if x else (0.16, 0.3)
+    y_limits = (0.0, padded(np.concatenate(y), 0.06, (0.0,))[1]) if y else (0.0, 1.0)
+    plot = Plot(width, height, x_limits, y_limits, "Froude number Fn [–]", word, margins=(48, 12, 8, 34))
+    if not designs:
+        plot.message("computing …")
+    for series, evaluation, curves in designs:
+        plot.line(curves.froude_number, values(curves), f"{series.css} {series.dash}", title=series.name)
+        for number, condition in enumerate(evaluation.conditions):
+            force = condition.wave_resistance if which == "wave" else condition.total_resistance
+            plot.mark(
+                condition.froude_number,
+                1e-6 * force,
+                "circle",
+                3.6,
+                _solid(series.css),
+                title=f"{series.name}, condition {number + 1}: {1e-3 * force:,.0f} kN",
+            )
+    return plot.svg(f"resistance_{which}")
+
+
+def thrust_chart(designs: Sequence[tuple[Series, Evaluation, DesignCurves]], width: float, height: float) -> str:
+    """Thrust required by the hull, and given by the propeller at each condition's rate, against Fn (figure 9)."""
+    x = [curves.froude_number for _, _, curves in designs]
+    top = [1e-6 * curves.thrust_required.max() for _, _, curves in designs]
+    x_limits = padded(np.concatenate(x), 0.0) if x else (0.16, 0.3)
+    plot = Plot(
+        width,
+        height,
+        x_limits,
+        (0.0, 1.25 * max(top, default=1.0)),
+        "Froude number Fn [–]",
+        "thrust T [MN]",
+        margins=(48, 12, 8, 34),
+    )
+    if not designs:
+        plot.message("computing …")
+    for series, evaluation, curves in designs:
+        plot.line(
+            curves.froude_number,
+            1e-6 * curves.thrust_required,
+            f"{series.css} {series.dash}",
+            title=f"required, {series.name}",
+        )
+        for number, (condition, available) in enumerate(
+            zip(evaluation.conditions, curves.thrust_available, strict=False)
+        ):
+            plot.line(
+                curves.froude_number,
+                1e-6 * available,
+                f"{series.css} dot thin",
+                title=f"available at {condition.rotation_rate_rpm:.1f} rpm, {series.name}",
+            )
+            plot.mark(
+                condition.froude_number,
+                1e-6 * condition.thrust,
+                "circle",
+                3.6,
+                _solid(series.css),
+                title=f"{series.name}, condition {number + 1}: T {1e-3 * condition.thrust:,.0f} kN at "
+                f"{condition.rotation_rate_rpm:.1f} rpm",
+            )
+        if series.css == "selected":
+            for condition in evaluation.conditions:
+                plot.text(
+                    condition.froude_number,
+                    1e-6 * condition.thrust,
+                    f"{condition.rotation_rate_rpm:.1f} rpm",
+                    anchor="start",
+                    dx=7,
+                    dy=4,
+                )
+    keys = [("line", f"{series.css} {series.dash}", f"required, {series.name}") for series, _, _ in designs]
+    keys.append(("line", "soft dot thin", "available at the condition's rate of rotation"))
+    return plot.svg("thrust") + legend(keys)
+
+
+def body_plan(designs: Sequence[tuple[Series, HullLines]], width: float, height: float) -> str:
+    """Sections: aft body at the left, fore body at the right."""
+    half = max(
+        (
+            float(np.abs(line[:, 0]).max())
+            for _, lines in designs
+            for _, parts in lines.sections
+            for line in parts
+            if len(line)
+        ),
+        default=26.0,
+    )
+    top = max(
+        (float(line[:, 1].max()) for _, lines in designs for _, parts in lines.sections for line in parts if len(line)),
+        default=20.0,
+    )
+    # equal scales: a body plan that is stretched lies
+    scale = min((width - 64.0) / (2.1 * half), (height - 44.0) / (1.06 * top))
+    y_span, z_span = (width - 64.0) / scale, (height - 44.0) / scale
+    plot = Plot(
+        width,
+        height,
+        (-y_span / 2, y_span / 2),
+        (-0.03 * top, z_span - 0.03 * top),
+        "half-breadth y [m]: aft body left, fore body right",
+        "height z [m]",
+        margins=(50, 14, 8, 36),
+    )
+    if not designs:
+        plot.message("computing …")
+    for series, lines in designs:
+        for station, parts in lines.sections:
+            side = -1.0 if station < 10 else 1.0
+            for line in parts:
+                plot.line(
+                    side * line[:, 0],
+                    line[:, 1],
+                    f"{series.css} {series.dash} thin",
+                    title=f"station {station:g}, {series.name}",
+                )
+        plot.horizontal(lines.draft, f"{series.css} guide")
+    plot.vertical(0.0, "guide")
+    return plot.svg("body_plan") + legend([("line", f"{s.css} {s.dash}", s.name) for s, _ in designs])
+
+
+def sectional_area_chart(designs: Sequence[tuple[Series, HullLines]], width: float, height: float) -> str:
+    """Sectional-area curves."""
+    top = max((float(lines.area.max()) for _, lines in designs), default=1.0)
+    plot = Plot(
+        width,
+        height,
+        (-0.06, 1.06),
+        (0.0, 1.08 * top),
+        "x / Lpp [–] (0: AP, 1: FP)",
+        "sectional area [m²]",
+        margins=(54, 14, 8, 34),
+    )
+    if not designs:
+        plot.message("computing …")
+    for series, lines in designs:
+        plot.line(lines.area_x, lines.area, f"{series.css} {series.dash}", title=series.name)
+    return plot.svg("sectional_area") + legend([("line", f"{s.css} {s.dash}", s.name) for s, _ in designs])
+
+
+def convergence_chart(
+    numbers: Sequence[int], levels: Sequence[int], values: Sequence[float], total: int, width: float, height: float
+) -> str:
+    """Hypervolume of the feasible front, one line for each level."""
+    shown = [value for value in values if np.isfinite(value)]
+    plot = Plot(
+        width,
+        height,
+        (0.0, float(max(total, 1))),
+        padded(shown, 0.08) if shown else (0.0, 1.0),
+        "generation [–]",
+        "hypervolume [–]",
+        margins=(56, 14, 8, 34),
+    )
+    if not shown:
+        plot.message("no generation yet")
+    for level in (1, 2):
+        at = [index for index, item in enumerate(levels) if item == level]
+        if at:
+            plot.line([numbers[i] for i in at], [values[i] for i in at], f"level{level}", title=f"level {level}")
+            plot.mark(float(numbers[at[-1]]), float(values[at[-1]]), "circle", 3.4, f"level{level}")
+    return plot.svg("convergence") + legend([("line", "level1", "level 1"), ("line", "level2", "level 2")])
+
+
+def best_chart(
+    numbers: Sequence[int], best: Sequence[tuple[float, float]], total: int, width: float, height: float
+) -> str:
+    """The least feasible f1 and f2 of each generation's front."""
+    values = np.asarray(best, dtype=float).reshape(-1, 2)
+    plot = Plot(
+        width,
+        height,
+        (0.0, float(max(total, 1))),
+        padded(values, 0.08),
+        "generation [–]",
+        "least objective on the front [–]",
+        margins=(56, 14, 8, 34),
+    )
+    if values.size:
+        plot.line(numbers, values[:, 0], "pin1", title="least f1")
+        plot.line(numbers, values[:, 1], "pin2", title="least f2")
+    return plot.svg("best") + legend([("line", "pin1", "least f₁"), ("line", "pin2", "least f₂")])

@@ -1,0 +1,142 @@
+"""Parallel coordinates over variables, objectives and results; brushes filter the Pareto chart too."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explorer.charts.plot import escape
+from explorer.quantities import OBJECTIVES, VARIABLES, Quantity, all_quantities, number_text
+from explorer.run_picture import RunPicture
+
+_MOST_LINES = 350
+_RESULTS = ("block_coefficient", "total_resistance_1", "open_water_efficiency_1", "delivered_power_1")
+
+
+def axes_of(picture: RunPicture) -> list[Quantity]:
+    """Free variables, a few results, and the objectives."""
+    free = set(picture.case.bounds.free)
+    chosen = [quantity for index, quantity in enumerate(VARIABLES) if index in free]
+    everything = {quantity.key: quantity for quantity in all_quantities(picture.case.conditions.froude_numbers)}
+    chosen += [everything[key] for key in _RESULTS if key in everything]
+    return [*chosen, *OBJECTIVES]
+
+
+def parallel_chart(
+    picture: RunPicture,
+    filters: Mapping[str, tuple[float, float]],
+    selected: int | None,
+    generation: int | None,
+    width: float,
+    height: float,
+) -> str:
+    """The chart as SVG: the archive thin, the front thick, what a brush keeps out faded."""
+    axes = [(quantity, picture.column(quantity.key)) for quantity in axes_of(picture)]
+    left, right, top, bottom = 26.0, 26.0, 40.0, 34.0
+    count = len(axes)
+    gap = (width - left - right) / max(count - 1, 1)
+    plot_height = height - top - bottom
+    parts = []
+    usable = picture.feasible & ~picture.failed
+    if generation is not None:
+        usable &= picture.generation <= generation
+    newest = picture.generation_at(generation)
+    front_rows = picture.rows(newest.front) if newest is not None else np.zeros(0, dtype=np.int64)
+    rows = np.flatnonzero(usable)
+    if len(rows) > _MOST_LINES:
+        rows = rows[np.linspace(0, len(rows) - 1, _MOST_LINES).astype(int)]
+    rows = np.union1d(rows, front_rows)
+    limits = [_axis_limits(picture, quantity, values) for quantity, values in axes]
+    keep = picture.inside(filters)
+    selected_row = picture.row(selected) if selected is not None else None
+    for group, css in ((rows, "archive"), (front_rows, f"level{newest.level if newest else 1}")):
+        for row in group:
+            points = []
+            for index, (_, values) in enumerate(axes):
+                value = values[row] if values is not None else np.nan
+                if not np.isfinite(value):
+                    points = []
+                    break
+                low, high = limits[index]
+                points.append(f"{left + index * gap:.0f} {top + (1 - (value - low) / (high - low)) * plot_height:.1f}")
+            if points:
+                fade = "opacity:.06" if not keep[row] else "opacity:.35" if css == "archive" else "opacity:.9"
+                parts.append(f'<path d="M{"L".join(points)}" class="line thin {css}" style="{fade}"/>')
+                if row == selected_row:
+                    parts.append(f'<path d="M{"L".join(points)}" class="line selected" style="stroke-width:2.6"/>')
+    for index, (quantity, _) in enumerate(axes):
+        x = left + index * gap
+        low, high = limits[index]
+        title_y = 12 if index % 2 == 0 else 24
+        parts.append(f'<path d="M{x:.1f} {top:.1f}V{top + plot_height:.1f}" class="axis"/>')
+        parts.append(
+            f'<text x="{x:.1f}" y="{title_y}" text-anchor="middle" class="axis-title">'
+            f"<title>{escape(quantity.label)}</title>{escape(quantity.title())}</text>"
+        )
+        parts.append(
+            f'<text x="{x:.1f}" y="{top - 4:.1f}" text-anchor="middle" class="note">'
+            f"{number_text(high, min(quantity.decimals, 3))}</text>"
+        )
+        parts.append(
+            f'<text x="{x:.1f}" y="{top + plot_height + 12:.1f}" text-anchor="middle" class="note">'
+            f"{number_text(low, min(quantity.decimals, 3))}</text>"
+        )
+        if quantity.key in filters:
+            a, b = filters[quantity.key]
+            y0 = top + (1 - (min(b, high) - low) / (high - low)) * plot_height
+            y1 = top + (1 - (max(a, low) - low) / (high - low)) * plot_height
+            parts.append(
+                f'<rect x="{x - 6:.1f}" y="{y0:.1f}" width="12" height="{max(y1 - y0, 2):.1f}" class="brush"/>'
+            )
+    if not len(rows):
+        parts.append(
+            f'<text x="{width / 2:.0f}" y="{height / 2:.0f}" text-anchor="middle" class="empty">no designs yet</text>'
+        )
+    area = f"{left:g},{top:g},{width - left - right:g},{plot_height:g}"
+    hint = (
+        '<p class="soft">Drag along an axis to keep a range (it filters the Pareto chart too); click an axis to drop '
+        "its range.</p>"
+    )
+    return (
+        f'<svg class="chart" data-chart="parallel" data-plot="{area}" data-limits="0,1,0,1" data-drag="brush" '
+        f'data-click="1" viewBox="0 0 {width:g} {height:g}" role="img" aria-label="parallel coordinates">'
+        f"{''.join(parts)}</svg>{hint}"
+    )
+
+
+def brushed(picture: RunPicture, fx: float, fy0: float, fy1: float) -> tuple[str, tuple[float, float] | None] | None:
+    """The axis and range that a drag means: fractions of the plot area, upwards; a mere click drops the range.
+
+    Returns:
+        (quantity key, range or None), or None when the drag began far from every axis.
+    """
+    axes = axes_of(picture)
+    position = fx * (len(axes) - 1)
+    index = round(position)
+    if not 0 <= index < len(axes) or abs(position - index) > 0.45:
+        return None
+    quantity = axes[index]
+    if abs(fy1 - fy0) < 0.015:
+        return quantity.key, None
+    values = picture.column(quantity.key)
+    low, high = _axis_limits(picture, quantity, values)
+    a, b = sorted((min(max(fy0, 0.0), 1.0), min(max(fy1, 0.0), 1.0)))
+    return quantity.key, (low + a * (high - low), low + b * (high - low))
+
+
+def _axis_limits(picture: RunPicture, quantity: Quantity, values: NDArray[np.float64] | None) -> tuple[float, float]:
+    """From the feasible designs, widened to the bounds where the axis is a variable; the same for drawing and brushing."""
+    usable = values[picture.feasible] if values is not None else np.zeros(0)
+    usable = usable[np.isfinite(usable)]
+    low, high = (float(usable.min()), float(usable.max())) if usable.size else (np.inf, -np.inf)
+    if quantity in VARIABLES:
+        factor = 100.0 if quantity.unit == "%" else 1.0
+        bounds = picture.case.bounds.as_dict()[quantity.key]
+        low, high = min(low, factor * bounds[0]), max(high, factor * bounds[1])
+    if not low <= high:
+        return 0.0, 1.0
+    if high - low < 1e-12:
+        return low - 0.5, high + 0.5
+    return low, high

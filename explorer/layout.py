@@ -1,0 +1,121 @@
+"""Where everything stands: settings and run control in the left dock, the chart and the design in the right one."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import viser
+
+from explorer.bridge import Bridge, PageEvent
+from explorer.state import AppState, Session
+from explorer.views.chart_tabs import chart_tabs
+from explorer.views.charts_view import ChartsView
+from explorer.views.compare_view import CompareView
+from explorer.views.design_view import DesignView
+from explorer.views.library_view import LibraryView
+from explorer.views.parallel_view import ParallelBrushes
+from explorer.views.pareto_view import ParetoView
+from explorer.views.run_control import RunControl
+from explorer.views.run_view import RunView
+from explorer.views.scene_view import SceneView
+from explorer.views.settings_view import SEARCH_FIELDS, SettingsView
+from explorer.views.toolbar_view import ToolbarView
+from explorer.views.whatif_view import WhatIfView
+from hpsop_core.errors import HpsopError
+
+LEFT_WIDTH, RIGHT_WIDTH = 340, 490
+_BRAND = (25, 113, 194)
+
+
+def build_shared(app: AppState, server: viser.ViserServer) -> None:
+    """The left dock: one for all browsers."""
+    gui = server.gui
+    gui.configure_theme(show_logo=False, show_share_button=False, brand_color=_BRAND)
+    gui.set_panel_label("hpsop")
+    gui.main_panel.dock_left()
+    gui.main_panel.set_width(LEFT_WIDTH)
+    server.scene.set_up_direction("+z")
+
+    def refuse(client_id: int, text: str) -> None:
+        session = app.sessions.get(client_id)
+        if session is not None:
+            session.notify("Not accepted", text, "red")
+
+    def save(event: viser.GuiEvent[Any]) -> None:
+        client = event.client
+        if client is None:
+            return
+        try:
+            case = app.draft.case()
+        except HpsopError as error:
+            refuse(client.client_id, str(error))
+            return
+        client.send_file_download(f"{case.name}.toml", case.to_toml().encode(), save_immediately=True)
+
+    RunView(app, gui)
+    tabs = gui.add_tab_group()
+    space = tabs.add_tab("Design space")
+    case_tab = tabs.add_tab("Case")
+    runs = tabs.add_tab("Runs")
+    SettingsView(app, gui, space, case_tab, refuse, save, SEARCH_FIELDS)
+    with runs:
+        LibraryView(app, gui)
+
+
+def build_session(session: Session, client: viser.ClientHandle) -> None:
+    """The right dock and the 3D view of one browser."""
+    gui = client.gui
+    with client.atomic():
+        top = gui.add_panel()
+        pareto = top.add_tab("Pareto front")
+        top.dock_right()
+        top.set_width(RIGHT_WIDTH)
+        bottom = gui.add_panel()
+        design, charts, compare, whatif = (
+            bottom.add_tab(title) for title in ("Design", "Charts", "Compare", "What-if")
+        )
+        bottom.dock_below(top)
+        RunControl(session)
+        ParallelBrushes(session)
+        with pareto:
+            Bridge(gui, session.receive)
+            ParetoView(session, gui)
+            ToolbarView(session, gui, client)
+        with design:
+            DesignView(session, gui)
+        with charts:
+            ChartsView(session, gui, chart_tabs())
+        with compare:
+            CompareView(session, gui)
+        with whatif:
+            WhatIfView(session, gui)
+    SceneView(session, client)
+
+    def hello(event: PageEvent) -> None:
+        _resize(session, event)
+        session.browser = event.browser[:64]
+        saved = session.app.memory.get(session.browser)
+        if saved is not None:
+            session.restore(saved)
+        if session.selected is None:
+            session.select_initial()
+        gui.configure_theme(
+            show_logo=False, show_share_button=False, brand_color=_BRAND, dark_mode=session.options.dark
+        )
+
+    def theme() -> None:
+        gui.configure_theme(
+            show_logo=False, show_share_button=False, brand_color=_BRAND, dark_mode=session.options.dark
+        )
+
+    session.handle("hello", "", hello)
+    session.handle("size", "", lambda event: _resize(session, event))
+    session.hub.on(("options",), theme)
+    session.worker.latest("first selection", lambda: session.selected or session.select_initial())
+
+
+def _resize(session: Session, event: PageEvent) -> None:
+    width, height = event.numbers.get("width"), event.numbers.get("height")
+    if width is not None and height is not None and 100 <= width <= 20000 and 100 <= height <= 20000:
+        session.size = (int(width), int(height))
+        session.hub.changed("size")

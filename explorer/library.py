@@ -1,0 +1,140 @@
+"""The user's folder of runs."""
+
+from __future__ import annotations
+
+import os
+import re
+import time
+from dataclasses import dataclass
+from pathlib import Path
+
+from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.runs.lock import is_being_written
+from hpsop_core.runs.reader import RunReader, open_run
+
+_STATES = {
+    "finished": "finished",
+    "stopped": "stopped",
+    "running": "running",
+    "paused": "paused",
+    "failed": "failed",
+    "interrupted": "interrupted",
+    "new": "not started",
+}
+
+
+@dataclass(frozen=True)
+class LibraryEntry:
+    """One run of the folder.
+
+    Attributes:
+        name: of the file.
+        title: the case's.
+        summary: state, generations, evaluations.
+        modified: seconds since 1970.
+        deletable: nobody writes it.
+    """
+
+    name: str
+    title: str
+    summary: str
+    modified: float
+    deletable: bool
+
+
+def runs_folder() -> Path:
+    """Where runs are saved: HPSOP_RUNS, or hpsop/runs in the user's data folder."""
+    stated = os.environ.get("HPSOP_RUNS")
+    if stated:
+        return Path(stated).expanduser()
+    data = os.environ.get("XDG_DATA_HOME")
+    return (Path(data) if data else Path.home() / ".local" / "share") / "hpsop" / "runs"
+
+
+class RunLibrary:
+    """The folder's runs; a name from a browser is only ever compared with the names that are there."""
+
+    def __init__(self, folder: Path) -> None:
+        self.folder = folder
+        self._known: dict[str, tuple[tuple[float, int], LibraryEntry]] = {}
+
+    def new_path(self, case_name: str) -> Path:
+        """A name that is not taken.
+
+        Raises:
+            InputError: the folder cannot be made.
+        """
+        try:
+            self.folder.mkdir(parents=True, exist_ok=True)
+        except OSError as error:
+            raise InputError(f"{self.folder}: cannot be made ({error.strerror}); set HPSOP_RUNS to a folder") from None
+        stem = re.sub(r"[^A-Za-z0-9_-]+", "-", case_name).strip("-") or "run"
+        base = f"{stem}-{time.strftime('%Y%m%d-%H%M%S')}"
+        path = self.folder / f"{base}.hpsop"
+        count = 2
+        while path.exists():
+            path = self.folder / f"{base}-{count}.hpsop"
+            count += 1
+        return path
+
+    def path(self, name: str) -> Path | None:
+        """The file of that name, if the folder has it."""
+        for path in self._files():
+            if path.name == name:
+                return path
+        return None
+
+    def entries(self) -> list[LibraryEntry]:
+        """Every run, newest first; a file that is no run says so."""
+        found = []
+        for path in self._files():
+            try:
+                status = path.stat()
+                journal = path.with_name(path.name + "-wal")
+                modified = max(status.st_mtime, journal.stat().st_mtime if journal.exists() else 0.0)
+            except OSError:
+                continue
+            stamp = (modified, status.st_size)
+            known = self._known.get(path.name)
+            if known is None or known[0] != stamp:
+                known = (stamp, _entry(path, modified))
+                self._known[path.name] = known
+            found.append(known[1])
+        return sorted(found, key=lambda entry: -entry.modified)
+
+    def delete(self, name: str) -> None:
+        """Delete a run for good.
+
+        Raises:
+            InputError: there is none of that name, or somebody writes it.
+        """
+        path = self.path(name)
+        if path is None:
+            raise InputError(f"{name}: no such run in {self.folder}")
+        if is_being_written(path):
+            raise InputError(f"{name}: is being written; stop that run first")
+        try:
+            for suffix in ("", "-wal", "-shm", ".lock"):
+                path.with_name(path.name + suffix).unlink(missing_ok=True)
+        except OSError as error:
+            raise InputError(f"{name}: cannot be deleted ({error.strerror})") from None
+
+    def _files(self) -> list[Path]:
+        try:
+            return sorted(path for path in self.folder.iterdir() if path.suffix == ".hpsop" and path.is_file())
+        except OSError:
+            return []
+
+
+def _entry(path: Path, modified: float) -> LibraryEntry:
+    try:
+        reader: RunReader = open_run(path)
+        state, _ = reader.state()
+        done, evaluations = reader.progress()
+        summary = (
+            f"{_STATES.get(state, state)}, generation {done} of {reader.case.optimization.generations}, "
+            f"{evaluations} evaluations"
+        )
+        return LibraryEntry(path.name, reader.case.title, summary, modified, not is_being_written(path))
+    except HpsopError as error:
+        return LibraryEntry(path.name, "not readable", str(error), modified, True)

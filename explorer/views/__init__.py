@@ -1,0 +1,1 @@
+"""The page's views: each draws from the state and none knows another."""

@@ -1,0 +1,156 @@
+"""Which charts there are, and what each draws from the state."""
+
+from __future__ import annotations
+
+from explorer.charts.curves import (
+    DesignCurves,
+    HullLines,
+    Series,
+    best_chart,
+    body_plan,
+    convergence_chart,
+    open_water_chart,
+    resistance_chart,
+    sectional_area_chart,
+    thrust_chart,
+)
+from explorer.charts.drivers import drivers_table
+from explorer.charts.parallel import parallel_chart
+from explorer.charts.plot import escape
+from explorer.quantities import VARIABLES, all_quantities
+from explorer.state import Session
+from explorer.views.charts_view import WIDTH, ChartTab, on_display
+from hpsop_core.evaluation_result import Evaluation
+
+
+def _height(session: Session, share: float = 0.30, least: float = 215.0, most: float = 330.0) -> float:
+    return min(max(share * session.size[1], least), most)
+
+
+def _open_water(session: Session) -> str:
+    designs = [(series, shown.evaluation) for series, shown in on_display(session)]
+    return open_water_chart(designs, WIDTH, _height(session, 0.34))
+
+
+def _with_curves(session: Session) -> list[tuple[Series, Evaluation, DesignCurves]]:
+    found = []
+    for series, shown in on_display(session):
+        curves = session.app.services.known_curves(shown.evaluation)
+        if curves is not None:
+            found.append((series, shown.evaluation, curves))
+        elif shown.evaluation.ok:
+            evaluation = shown.evaluation
+
+            def compute(evaluation: Evaluation = evaluation) -> None:
+                session.app.services.curves(evaluation)
+                session.hub.changed("curves")
+
+            session.heavy.latest(f"curves {shown.key}", compute)
+    return found
+
+
+def _resistance(session: Session) -> str:
+    designs = _with_curves(session)
+    height = _height(session, 0.24, 190.0, 260.0)
+    level = session.selected.evaluation.level if session.selected else 1
+    note = f'<p class="soft">Level {level}; marks are the operating conditions.</p>'
+    return resistance_chart(designs, "total", WIDTH, height) + resistance_chart(designs, "wave", WIDTH, height) + note
+
+
+def _thrust(session: Session) -> str:
+    return thrust_chart(_with_curves(session), WIDTH, _height(session, 0.34))
+
+
+def _with_lines(session: Session) -> list[tuple[Series, HullLines]]:
+    return [
+        (series, session.app.services.lines(shown.evaluation.variables))
+        for series, shown in on_display(session)
+        if shown.evaluation.hull is not None
+    ]
+
+
+def _lines(session: Session) -> str:
+    lines = _with_lines(session)
+    return body_plan(lines, WIDTH, _height(session, 0.36, 230.0, 330.0)) + sectional_area_chart(
+        lines, WIDTH, _height(session, 0.24, 180.0, 240.0)
+    )
+
+
+def _parallel(session: Session) -> str:
+    return parallel_chart(
+        session.picture,
+        session.filters,
+        session.selected.design_id if session.selected else None,
+        session.scrubbed,
+        WIDTH,
+        _height(session, 0.36, 240.0, 360.0),
+    )
+
+
+def _drivers(session: Session) -> str:
+    return drivers_table(session.picture)
+
+
+def _convergence(session: Session) -> str:
+    picture = session.picture
+    numbers = [item.number for item in picture.generations]
+    levels = [item.level for item in picture.generations]
+    values = [item.hypervolume for item in picture.generations]
+    best = []
+    for item in picture.generations:
+        rows = picture.rows(item.front)
+        best.append(tuple(picture.objectives[rows].min(axis=0)) if len(rows) else (float("nan"), float("nan")))
+    height = _height(session, 0.26, 190.0, 270.0)
+    note = '<p class="soft">Hypervolume of the feasible front against (1.2, 1.2); each level has its own series.</p>'
+    return (
+        convergence_chart(numbers, levels, values, picture.total_generations, WIDTH, height)
+        + best_chart(numbers, best, picture.total_generations, WIDTH, height)
+        + note
+    )
+
+
+def _failures(session: Session) -> str:
+    picture = session.picture
+    ids = [int(value) for value in picture.ids[picture.failed]]
+    if not ids:
+        done = len(picture.ids)
+        return f'<p class="soft">{"No evaluation failed" if done else "Nothing evaluated yet"}' + (
+            f" among {done}.</p>" if done else ".</p>"
+        )
+    rows = ["<tr><th>design</th><th>level</th><th>gen.</th><th>stage</th><th>reason</th></tr>"]
+    for design_id in ids[-100:][::-1]:
+        shown = session.app.shown(design_id)
+        if shown is None:
+            continue
+        evaluation = shown.evaluation
+        variables = ", ".join(f"{key} {value:g}" for key, value in evaluation.variables.as_dict().items())
+        rows.append(
+            f'<tr title="{escape(variables)}"><td>{design_id}</td><td>{evaluation.level}</td>'
+            f"<td>{shown.generation}</td><td>{escape(evaluation.stage)}</td>"
+            f'<td class="name" style="text-align:left">{escape(evaluation.reason)}</td></tr>'
+        )
+    more = f'<p class="soft">the latest 100 of {len(ids)}</p>' if len(ids) > 100 else ""
+    return f'<table class="numbers">{"".join(rows)}</table>{more}'
+
+
+_DESIGN = frozenset({"selection", "pins"})
+_TABS = (
+    ChartTab("open_water", "Open water", _DESIGN, _open_water),
+    ChartTab("resistance", "Resistance", _DESIGN | {"curves"}, _resistance),
+    ChartTab("thrust", "Thrust", _DESIGN | {"curves"}, _thrust),
+    ChartTab("lines", "Lines", _DESIGN, _lines),
+    ChartTab("parallel", "Parallel", frozenset({"run", "filter", "selection", "scrub"}), _parallel),
+    ChartTab("drivers", "Drivers", frozenset({"run"}), _drivers),
+    ChartTab("convergence", "Convergence", frozenset({"run"}), _convergence),
+    ChartTab("failures", "Failures", frozenset({"run"}), _failures),
+)
+
+
+def chart_tabs() -> dict[str, ChartTab]:
+    """All charts by name, in order."""
+    return {tab.name: tab for tab in _TABS}
+
+
+def table_columns(froude_numbers: tuple[float, ...]) -> tuple[str, ...]:
+    """Quantities kept for every design of a run, for parallel coordinates, filters and correlations."""
+    return tuple(quantity.key for quantity in (*VARIABLES, *all_quantities(froude_numbers)))

@@ -1,0 +1,86 @@
+"""The tabs of charts: only the chosen one is drawn, so a stream of generations costs no more than what is looked at."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Mapping
+from dataclasses import dataclass
+
+import viser
+
+from explorer.bridge import PageEvent
+from explorer.charts.curves import Series
+from explorer.state import Session, Shown
+from explorer.views.chips import box, chip, chips
+
+WIDTH = 470.0
+_DASHES = ("dash", "dot", "dash", "dot")
+
+
+@dataclass(frozen=True)
+class ChartTab:
+    """A chart that can be chosen.
+
+    Attributes:
+        name: for events.
+        title: on its button.
+        topics: what it is drawn from.
+        render: the HTML; called on the session's worker.
+    """
+
+    name: str
+    title: str
+    topics: frozenset[str]
+    render: Callable[[Session], str]
+
+
+class ChartsView:
+    """A row of buttons and the chosen chart."""
+
+    def __init__(self, session: Session, gui: viser.GuiApi, tabs: Mapping[str, ChartTab]) -> None:
+        self._session = session
+        self._tabs = tabs
+        self._bar = gui.add_html("")
+        self._html = gui.add_html("")
+        session.handle("act", "tab", self._choose)
+        for topic in sorted({topic for tab in tabs.values() for topic in tab.topics}):
+            session.hub.on((topic,), lambda topic=topic: self._topic(topic))
+        session.hub.on(("tab", "size"), self.draw)
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw the bar and the chosen chart."""
+        chosen = self._chosen()
+        self._bar.content = box(
+            chips(*(chip("tab", tab.title, tab.name, on=tab.name == chosen.name) for tab in self._tabs.values()))
+        )
+        self._html.content = box(f'<div data-chart-tab="{chosen.name}">{chosen.render(self._session)}</div>')
+
+    def _topic(self, topic: str) -> None:
+        chosen = self._chosen()
+        if topic in chosen.topics:
+            self._html.content = box(f'<div data-chart-tab="{chosen.name}">{chosen.render(self._session)}</div>')
+
+    def _chosen(self) -> ChartTab:
+        return self._tabs.get(self._session.tab) or next(iter(self._tabs.values()))
+
+    def _choose(self, event: PageEvent) -> None:
+        if event.arg in self._tabs:
+            self._session.tab = event.arg
+            self._session.app.remember(self._session)
+            self._session.hub.changed("tab")
+
+
+def on_display(session: Session) -> list[tuple[Series, Shown]]:
+    """What charts overlay: the initial design dashed, pins, and the selection last."""
+    shown: list[tuple[Series, Shown]] = []
+    selected = session.selected
+    level = selected.evaluation.level if selected else 1
+    initial = session.app.initial_shown(level)
+    if initial is not None:
+        shown.append((Series("initial", "initial", "dash"), initial))
+    for index, item in enumerate(session.pins):
+        if selected is None or item.key != selected.key:
+            shown.append((Series(f"pinned {item.label.lower()}", f"pin{index + 1}", _DASHES[index]), item))
+    if selected is not None and selected.kind != "initial":
+        shown.append((Series(selected.label, "selected"), selected))
+    return shown

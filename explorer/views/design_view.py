@@ -1,0 +1,76 @@
+"""The selected design's numbers beside the initial design's."""
+
+from __future__ import annotations
+
+import viser
+
+from explorer.bridge import PageEvent
+from explorer.state import Session
+from explorer.views.chips import box, chip, chips
+from explorer.views.tables import comparison_table, headline, warnings_html
+
+
+class DesignView:
+    """Headline, choices, and the table initial / selected / change."""
+
+    def __init__(self, session: Session, gui: viser.GuiApi) -> None:
+        self._session = session
+        self._html = gui.add_html("")
+        session.hub.on(("selection", "pins", "run"), self.draw)
+        session.handle("act", "choose", self._choose)
+        session.handle("act", "pin", self._pin)
+        self._last: tuple[object, ...] = ()
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw everything again, unless nothing of it changed."""
+        session = self._session
+        picture, shown = session.picture, session.selected
+        state = (shown, session.pins, picture.compromise, picture.knee, picture.name, picture.current_level)
+        if state == self._last:
+            return
+        self._last = state
+        if shown is None:
+            self._html.content = box('<p class="soft">Computing the initial design …</p>')
+            return
+        pinned = any(item.key == shown.key for item in session.pins)
+        row = chips(
+            chip("choose", "initial", "initial", on=shown.kind == "initial"),
+            chip(
+                "choose",
+                "compromise",
+                "compromise",
+                disabled=picture.compromise is None,
+                on=shown.design_id is not None and shown.design_id == picture.compromise,
+                hint="least distance to the utopia point of the front",
+            ),
+            chip(
+                "choose",
+                "knee",
+                "knee",
+                disabled=picture.knee is None,
+                on=shown.design_id is not None and shown.design_id == picture.knee,
+                hint="where the front bends most",
+            ),
+            '<span class="gap"></span>',
+            chip("pin", "pinned" if pinned else "pin", on=pinned, hint="keep this design side by side (at most four)"),
+        )
+        initial = session.app.initial_shown(shown.evaluation.level)
+        table = comparison_table(initial, shown, session.picture.case.conditions.froude_numbers)
+        self._html.content = box(
+            f'<div data-selected="{shown.design_id if shown.design_id is not None else shown.kind}">'
+            f"{headline(shown)}</div>{row}{warnings_html(shown)}{table}"
+        )
+
+    def _choose(self, event: PageEvent) -> None:
+        picture = self._session.picture
+        if event.arg == "initial":
+            self._session.select_initial()
+        elif event.arg == "compromise" and picture.compromise is not None:
+            self._session.select_id(picture.compromise)
+        elif event.arg == "knee" and picture.knee is not None:
+            self._session.select_id(picture.knee)
+
+    def _pin(self, _event: PageEvent) -> None:
+        if self._session.selected is not None:
+            self._session.pin(self._session.selected)

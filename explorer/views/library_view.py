@@ -1,0 +1,48 @@
+"""The start page: earlier runs to open, continue or delete."""
+
+from __future__ import annotations
+
+import time
+
+import viser
+
+from explorer.charts.plot import escape
+from explorer.state import AppState
+from explorer.views.chips import box, chip, chips
+
+
+class LibraryView:
+    """One row for each run in the user's folder, newest first."""
+
+    def __init__(self, app: AppState, gui: viser.GuiApi) -> None:
+        self._app = app
+        self._html = gui.add_html("")
+        self._asked = ""
+        app.hub.on(("library",), self.draw)
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw everything again."""
+        services = self._app.services
+        rows = []
+        for entry in services.library():
+            current = entry.name == self._app.picture.name
+            age = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.modified))
+            if services.asked_to_delete == entry.name:
+                buttons = chips(
+                    '<span class="bad">Delete this run for good?</span><span class="gap"></span>',
+                    chip("delete_yes", "delete", entry.name, css="danger"),
+                    chip("delete_no", "keep"),
+                )
+            else:
+                buttons = chips(
+                    chip("open_run", "shown" if current else "open", entry.name, on=current),
+                    chip("delete_run", "delete …", entry.name, disabled=not entry.deletable),
+                )
+            rows.append(
+                f'<div class="row"><b>{escape(entry.title)}</b><br><span class="soft">{escape(entry.summary)}<br>'
+                f"{age} · {escape(entry.name)}</span>{buttons}</div>"
+            )
+        empty = '<p class="soft">No runs yet. Each run is saved by itself and stands here.</p>'
+        where = f'<p class="soft">Folder: {escape(services.folder_text())}</p>'
+        self._html.content = box((f'<div class="rows">{"".join(rows)}</div>' if rows else empty) + where)

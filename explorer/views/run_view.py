@@ -1,0 +1,104 @@
+"""Run control and progress: shared by all browsers."""
+
+from __future__ import annotations
+
+import viser
+
+from explorer.charts.plot import escape
+from explorer.quantities import number_text
+from explorer.run_picture import ACTIVE, FAILED, FINISHED, IDLE, PAUSED, RUNNING, STARTING, STOPPED, STOPPING
+from explorer.state import AppState
+from explorer.views.chips import box, chip, chips
+
+_WORDS = {
+    IDLE: "Ready",
+    STARTING: "Starting …",
+    RUNNING: "Running",
+    PAUSED: "Paused",
+    STOPPING: "Stopping …",
+    STOPPED: "Stopped",
+    FINISHED: "Finished",
+    FAILED: "Failed",
+}
+
+
+class RunView:
+    """Status, buttons, progress bar and figures."""
+
+    def __init__(self, app: AppState, gui: viser.GuiApi) -> None:
+        self._app = app
+        self._html = gui.add_html("")
+        self._bar = gui.add_progress_bar(0.0)
+        app.hub.on(("run", "people"), self.draw)
+        self.draw()
+
+    def draw(self) -> None:
+        """Draw everything again."""
+        picture, services = self._app.picture, self._app.services
+        status = picture.status
+        driven = picture.live
+        active = status in ACTIVE and driven
+        watching = len(self._app.sessions)
+        people = f"{watching} watching" if watching != 1 else ""
+        word = _WORDS.get(status, status)
+        if status in ACTIVE and not driven:
+            word = "Running elsewhere" if status != PAUSED else "Paused elsewhere"
+        buttons = [chip("run_start", "▶ Start", css="big primary", hint="start a new run of the case as set up")]
+        if active:
+            buttons = [
+                chip("run_resume", "▶ Resume", css="big primary")
+                if status == PAUSED
+                else chip("run_pause", "❚❚ Pause", css="big", disabled=status != RUNNING),
+                chip("run_stop", "■ Stop", css="big danger", disabled=status == STOPPING),
+            ]
+        elif picture.name and services.can_continue():
+            buttons.append(chip("run_continue", "▶▶ Continue", css="big", hint="go on with this run"))
+        elif picture.name and services.can_extend():
+            buttons.append(chip("run_extend", "+ 25 generations", "25", css="big", hint="extend this run"))
+        message = (
+            f'<p class="{"bad" if status == FAILED else "soft"}">{escape(picture.message)}</p>'
+            if (picture.message)
+            else ""
+        )
+        name = f'<span class="soft" title="{escape(picture.name)}">{escape(_short(picture.name))}</span>'
+        self._html.content = box(
+            f'<div class="status" data-run-status="{status}" data-generation="{len(picture.generations)}">'
+            f'<b class="state-{status}">{word}</b> {name}<span class="gap"></span>'
+            f'<span class="soft">{people}</span></div>{chips(*buttons)}{message}{self._facts()}'
+        )
+        total = max(picture.total_generations, 1)
+        self._bar.value = min(100.0, 100.0 * (len(picture.generations) + services.part_of_generation()) / total)
+        self._bar.visible = bool(picture.generations) or active
+
+    def _facts(self) -> str:
+        picture = self._app.picture
+        if not picture.generations and picture.status == IDLE:
+            return '<p class="soft">Set bounds below and press Start.</p>'
+        newest = picture.generations[-1] if picture.generations else None
+        level = newest.level if newest else 1
+        facts = [
+            ("generation", f"{len(picture.generations)} of {picture.total_generations}, level {level}"),
+            ("evaluations", f"{number_text(len(picture.ids), 0)}, {int(picture.failed.sum())} failed"),
+            ("hypervolume", number_text(newest.hypervolume, 5) if newest else "–"),
+        ]
+        if picture.status in ACTIVE and picture.seconds_left is not None:
+            facts.append(("time left", _duration(picture.seconds_left)))
+        elif picture.elapsed > 0.0:
+            facts.append(("time used", _duration(picture.elapsed)))
+        return (
+            '<div class="facts">'
+            + "".join(f'<span class="soft">{a}</span><span>{b}</span>' for a, b in facts)
+            + "</div>"
+        )
+
+
+def _short(name: str) -> str:
+    return name if len(name) <= 34 else name[:20] + "…" + name[-13:]
+
+
+def _duration(seconds: float) -> str:
+    if seconds < 90.0:
+        return f"{seconds:.0f} s"
+    if seconds < 5400.0:
+        return f"{seconds / 60.0:.0f} min"
+    return f"{seconds / 3600.0:.1f} h"

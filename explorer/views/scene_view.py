@@ -1,0 +1,225 @@
+"""The selected design in 3D: hull, propeller in its aperture, water, waterline, ghost."""
+
+from __future__ import annotations
+
+import math
+import threading
+import time
+from typing import Any
+
+import numpy as np
+import viser
+
+from explorer.bridge import PageEvent
+from explorer.scene.camera import PRESETS, preset
+from explorer.scene.geometry import SceneGeometry
+from explorer.state import Session, Shown
+from hpsop_core.errors import HpsopError
+
+UNDERWATER = (158, 62, 48)
+TOPSIDES = (70, 86, 104)
+BRONZE = (196, 150, 72)
+GHOST = (130, 140, 150)
+WATER = (72, 130, 170)
+WATERLINE = (235, 240, 245)
+# the propeller turns at a quarter of its real rate: a screen cannot show 100 rpm of five blades
+_SPIN_SCALE = 0.25
+_FRAME_SECONDS = 1.0 / 25.0
+
+
+class SceneView:
+    """One browser's own 3D nodes, moved in place where the topology allows."""
+
+    def __init__(self, session: Session, client: viser.ClientHandle) -> None:
+        self._session = session
+        self._client = client
+        self._handles: dict[str, Any] = {}
+        self._faces: dict[str, int] = {}
+        self._drawn: tuple[object, ...] = ()
+        self._geometry: SceneGeometry | None = None
+        self._pose_key: tuple[object, ...] = ()
+        self._spinning = threading.Event()
+        self.shown_design: object = None
+        client.scene.configure_default_lights(cast_shadow=False)
+        session.hub.on(("selection", "options", "pins"), self._ask)
+        session.hub.on(("size",), lambda: self.place_camera())
+        session.handle("act", "camera", self._camera)
+        session.on_close(self._spinning.clear)
+        self._ask()
+
+    def _ask(self) -> None:
+        self._session.heavy.latest("geometry", self.draw)
+
+    def _ghosted(self) -> Shown | None:
+        session = self._session
+        if not session.options.ghost or session.selected is None:
+            return None
+        if session.pins:
+            other = [item for item in session.pins if item.key != session.selected.key]
+            if other:
+                return other[0]
+        return session.app.initial_shown(session.selected.evaluation.level)
+
+    def draw(self) -> None:
+        """Bring the scene to the session's selection and options."""
+        session = self._session
+        shown, options = session.selected, session.options
+        if shown is None:
+            return
+        ghost = self._ghosted()
+        state = (
+            shown.key,
+            options.ghost,
+            ghost.key if ghost else None,
+            options.topsides,
+            options.water,
+            options.waves,
+            options.camera == "propeller",
+            session.picture.case,
+        )
+        if state != self._drawn:
+            try:
+                geometry = session.app.services.geometry(shown.evaluation.variables)
+                ghost_geometry = session.app.services.geometry(ghost.evaluation.variables) if ghost else None
+            except HpsopError as error:
+                session.notify("No geometry for this design", str(error), "yellow")
+                return
+            first = self._geometry is None
+            self._geometry = geometry
+            with self._client.atomic():
+                self._draw_ship(geometry, ghost_geometry)
+            self._client.flush()
+            self._drawn = state
+            self.shown_design = shown.design_id if shown.design_id is not None else shown.kind
+            if first:
+                self.place_camera()
+        self._spin()
+
+    def _draw_ship(self, geometry: SceneGeometry, ghost: SceneGeometry | None) -> None:
+        options = self._session.options
+        close_up = options.camera == "propeller"
+        self._mesh("underwater", "/ship/underwater", *geometry.underwater, color=UNDERWATER)
+        self._mesh("topsides", "/ship/topsides", *geometry.topsides, color=TOPSIDES, visible=options.topsides)
+        frame = self._handles.get("propeller frame")
+        if frame is None:
+            frame = self._client.scene.add_frame("/ship/propeller", show_axes=False)
+            self._handles["propeller frame"] = frame
+        frame.position = geometry.propeller_position
+        self._mesh("propeller", "/ship/propeller/blades", *geometry.propeller, color=BRONZE)
+        self._lines("waterline", "/ship/waterline", geometry.waterline, WATERLINE)
+        self._mesh(
+            "water",
+            "/water",
+            *geometry.water,
+            color=WATER,
+            opacity=0.28,
+            visible=options.water and not close_up and not options.waves,
+        )
+        if ghost is not None:
+            self._mesh("ghost", "/ghost/underwater", *ghost.underwater, color=GHOST, opacity=0.35)
+            self._mesh("ghost top", "/ghost/topsides", *ghost.topsides, color=GHOST, opacity=0.22)
+            self._handles["ghost"].visible = True
+            self._handles["ghost top"].visible = options.topsides
+        else:
+            for name in ("ghost", "ghost top"):
+                if name in self._handles:
+                    self._handles[name].visible = False
+
+    def _mesh(
+        self,
+        key: str,
+        name: str,
+        vertices: np.ndarray,
+        faces: np.ndarray,
+        color: tuple[int, int, int],
+        opacity: float | None = None,
+        visible: bool = True,
+    ) -> None:
+        handle = self._handles.get(key)
+        topology = hash((len(vertices), faces.tobytes()))
+        if handle is None or self._faces.get(key) != topology:
+            if handle is not None:
+                handle.remove()
+            handle = self._client.scene.add_mesh_simple(
+                name,
+                vertices.astype(np.float32),
+                faces.astype(np.uint32),
+                color=color,
+                opacity=opacity,
+                side="double",
+                cast_shadow=False,
+                receive_shadow=False,
+            )
+            self._handles[key], self._faces[key] = handle, topology
+        else:
+            handle.vertices = vertices.astype(np.float32)
+        if handle.visible != visible:
+            handle.visible = visible
+
+    def _lines(self, key: str, name: str, points: np.ndarray, color: tuple[int, int, int]) -> None:
+        handle = self._handles.get(key)
+        segments = np.stack([points[:-1], points[1:]], axis=1).astype(np.float32)
+        if handle is not None and handle.points.shape == segments.shape:
+            handle.points = segments
+            return
+        if handle is not None:
+            handle.remove()
+        self._handles[key] = self._client.scene.add_line_segments(
+            name, segments, np.full((len(segments), 2, 3), color, dtype=np.uint8), line_width=1.5
+        )
+
+    # ---- camera ----------------------------------------------------------------------------------------------------
+    def _camera(self, event: PageEvent) -> None:
+        if event.arg in PRESETS:
+            self._session.set_options(camera=event.arg)
+            self.place_camera()
+
+    def place_camera(self) -> None:
+        """Put the camera where its preset stands."""
+        geometry = self._geometry
+        if geometry is None:
+            return
+        width, height = self._session.size
+        aspect = max(width - 840.0, 200.0) / max(height, 200.0)
+        pose = preset(
+            self._session.options.camera,
+            geometry.length,
+            geometry.breadth,
+            geometry.draft,
+            (float(geometry.propeller_position[0]), float(geometry.propeller_position[2])),
+            geometry.diameter,
+            aspect,
+        )
+        camera = self._client.camera
+        with self._client.atomic():
+            camera.near = 0.5
+            camera.far = 60_000.0
+            camera.up_direction = pose.up
+            camera.position = pose.position
+            camera.look_at = pose.look_at
+            camera.fov = pose.field_of_view
+
+    # ---- spin ------------------------------------------------------------------------------------------------------
+    def _spin(self) -> None:
+        wanted = self._session.options.spin
+        if wanted and not self._spinning.is_set():
+            self._spinning.set()
+            threading.Thread(target=self._turn, name="spin", daemon=True).start()
+        elif not wanted:
+            self._spinning.clear()
+
+    def _turn(self) -> None:
+        angle, last = 0.0, time.monotonic()
+        while self._spinning.is_set():
+            now = time.monotonic()
+            shown = self._session.selected
+            conditions = shown.evaluation.conditions if shown is not None else ()
+            index = min(self._session.options.condition, len(conditions) - 1)
+            rate = conditions[index].rotation_rate_rpm / 60.0 if conditions else 0.0
+            # right-handed: clockwise seen from astern, looking forward along +x, is a positive turn about +x
+            angle = (angle + 2.0 * math.pi * rate * _SPIN_SCALE * (now - last)) % (2.0 * math.pi)
+            last = now
+            frame = self._handles.get("propeller frame")
+            if frame is not None:
+                frame.wxyz = (math.cos(angle / 2.0), math.sin(angle / 2.0), 0.0, 0.0)
+            time.sleep(_FRAME_SECONDS)

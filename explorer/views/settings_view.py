@@ -1,0 +1,304 @@
+"""The design space and the case's settings: shared by all browsers, checked in Python whatever a browser sends."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from typing import Any
+
+import viser
+
+from explorer.charts.plot import escape
+from explorer.draft import numbers_from_text
+from explorer.quantities import VARIABLES, Quantity, number_text
+from explorer.state import AppState
+from explorer.views.chips import box
+from hpsop_core.case import SHIPPED_CASES, load_case
+from hpsop_core.case_fields import checked_value, rules
+from hpsop_core.design import VARIABLE_RULES
+from hpsop_core.errors import InputError
+
+# How far the sliders reach: wider than the paper's Table 2, narrower than what the parents' families carry.
+_SLIDER_RANGES: dict[str, tuple[float, float, float]] = {
+    "length_to_breadth": (6.0, 9.0, 0.01),
+    "breadth_to_draft": (2.6, 4.8, 0.01),
+    "draft": (12.0, 16.0, 0.01),
+    "diameter": (7.5, 10.5, 0.01),
+    "blade_count": (3, 7, 1),
+    "pitch_ratio": (0.8, 1.2, 0.001),
+    "displacement_ratio": (0.85, 1.15, 0.001),
+    "expanded_area_ratio": (0.4, 1.05, 0.001),
+    "buoyancy_centre_shift": (-0.02, 0.02, 0.0005),
+}
+_FIELDS: tuple[tuple[str, tuple[tuple[str, str, str], ...]], ...] = (
+    (
+        "Operating conditions",
+        (
+            ("conditions", "froude_numbers", "Froude numbers"),
+            ("conditions", "weights", "Weights"),
+            ("conditions", "speed", "Speed"),
+        ),
+    ),
+    (
+        "Form and objectives",
+        (
+            ("hull", "form", "Hull form"),
+            ("objectives", "first", "Objective f₁"),
+            ("objectives", "second", "Objective f₂"),
+        ),
+    ),
+    (
+        "Constraints",
+        (
+            ("constraints", "displacement_tolerance", "g₁ tolerance"),
+            ("constraints", "diameter_to_draft_lower", "g₂ D/d from"),
+            ("constraints", "diameter_to_draft_upper", "g₂ D/d to"),
+            ("constraints", "g3_level", "g₃ from level"),
+            ("constraints", "keller_k", "Keller's K"),
+        ),
+    ),
+    (
+        "Physics",
+        (
+            ("constants", "form_factor", "Form factor k"),
+            ("constants", "wave_calibration", "Calibration"),
+            ("constants", "wake_formula", "Wake"),
+        ),
+    ),
+    (
+        "Search",
+        (
+            ("optimization", "crossover_probability", "Crossover"),
+            ("optimization", "mutation_probability", "Mutation"),
+            ("optimization", "constraint_handling", "Constraints"),
+            ("optimization", "reseed_share", "Re-seeded"),
+        ),
+    ),
+)
+SEARCH_FIELDS: tuple[tuple[str, str, str], ...] = (
+    ("optimization", "population", "Population"),
+    ("optimization", "generations", "Generations"),
+    ("optimization", "level1_generations", "of these level 1"),
+    ("optimization", "seed", "Seed"),
+)
+
+
+class SettingsView:
+    """Presets, range sliders and fields of the case being set up."""
+
+    def __init__(
+        self,
+        app: AppState,
+        gui: viser.GuiApi,
+        space: Any,
+        case: Any,
+        refuse: Callable[[int, str], None],
+        save: Callable[[viser.GuiEvent[Any]], None],
+        search: Sequence[tuple[str, str, str]],
+    ) -> None:
+        self._app = app
+        self._gui = gui
+        self._refuse = refuse
+        self._readouts: dict[str, viser.GuiHtmlHandle] = {}
+        self._sliders: dict[str, Any] = {}
+        self._widgets: dict[tuple[str, str], Any] = {}
+        with space:
+            self._preset = gui.add_dropdown("Case", self._preset_names(), initial_value=app.draft.base.name)
+            self._about = gui.add_html("")
+            for section, name, label in search:
+                self.add_field(section, name, label)
+            for quantity in VARIABLES:
+                self._add_slider(quantity)
+            self._reset = gui.add_button("Reset changes to the preset", color="gray")
+        with case:
+            for title, fields in _FIELDS:
+                with gui.add_folder(title, expand_by_default=title in ("Operating conditions", "Form and objectives")):
+                    for section, name, label in fields:
+                        self.add_field(section, name, label)
+            self._save = gui.add_button("Save this case as TOML")
+        self._preset.on_update(self._on_preset)
+        self._reset.on_click(self._on_reset)
+        self._save.on_click(save)
+        app.hub.on(("draft",), self.draw)
+        self.draw()
+
+    def _preset_names(self) -> list[str]:
+        names = list(SHIPPED_CASES)
+        return names if self._app.draft.base.name in names else [self._app.draft.base.name, *names]
+
+    # ---- bounds ----------------------------------------------------------------------------------------------------
+    def _add_slider(self, quantity: Quantity) -> None:
+        low, high = self._app.draft.base.bounds.as_dict()[quantity.key]
+        least, most, step = _SLIDER_RANGES[quantity.key]
+        rule = VARIABLE_RULES[quantity.key]
+        least, most = max(min(least, low), rule.lower), min(max(most, high), rule.upper)
+        kind = int if rule.kind == "integer" else float
+        label = f"{quantity.symbol} [{quantity.unit}]" if quantity.unit and quantity.unit != "%" else quantity.symbol
+        slider = self._gui.add_multi_slider(
+            label, kind(least), kind(most), kind(step), (kind(low), kind(high)), hint=rule.meaning, marks=()
+        )
+        readout = self._gui.add_html("")
+        self._sliders[quantity.key], self._readouts[quantity.key] = slider, readout
+
+        def update(event: viser.GuiEvent[Any]) -> None:
+            if event.client_id is not None:
+                self._on_bounds(quantity.key, event)
+
+        slider.on_update(update)
+
+    def _on_bounds(self, key: str, event: viser.GuiEvent[Any]) -> None:
+        try:
+            self.set_bounds(key, event.target.value)
+        except InputError as error:
+            self._refuse(event.client_id or 0, str(error))
+            # what was refused must not stay on the screen
+            self._sliders[key].value = tuple(self._typed(key, value) for value in self._app.draft.value("bounds", key))
+            self._app.hub.changed("draft")
+
+    def set_bounds(self, key: str, value: Any) -> None:
+        """New bounds of a variable from anything a browser may send.
+
+        Raises:
+            InputError: not two finite numbers within the slider, or reversed.
+        """
+        slider, rule = self._sliders[key], VARIABLE_RULES[key]
+        if (
+            not isinstance(value, list | tuple)
+            or len(value) != 2
+            or not all(
+                isinstance(item, int | float) and not isinstance(item, bool) and math.isfinite(item) for item in value
+            )
+        ):
+            raise InputError(f"bounds: {key} needs two finite numbers; drag the slider's thumbs")
+        low, high = (float(item) for item in value)
+        if low > high:
+            raise InputError(f"bounds: {key} has reversed bounds {low:g} > {high:g}; give the smaller one first")
+        if low < slider.min - 1e-9 or high > slider.max + 1e-9:
+            raise InputError(f"bounds: {key} must stay within {slider.min:g} to {slider.max:g}")
+        if rule.kind == "integer" and (low != round(low) or high != round(high)):
+            raise InputError(f"bounds: {key} must be whole numbers")
+        with self._app.lock:
+            self._app.draft.set("bounds", key, (low, high))
+        self._app.tell_all("draft")
+
+    @staticmethod
+    def _typed(key: str, value: float) -> float | int:
+        return round(value) if VARIABLE_RULES[key].kind == "integer" else float(value)
+
+    # ---- fields ----------------------------------------------------------------------------------------------------
+    def add_field(self, section: str, name: str, label: str) -> None:
+        """A widget for one field of the case, as its rule asks."""
+        rule = rules(type(getattr(self._app.draft.base, section)))[name]
+        value = self._app.draft.value(section, name)
+        hint = rule.meaning + (f" [{rule.unit}]" if rule.unit else "")
+        widget: Any
+        if rule.kind == "choice":
+            widget = self._gui.add_dropdown(label, list(rule.choices), initial_value=value, hint=hint)
+        elif rule.kind == "numbers":
+            widget = self._gui.add_text(label, _list_text(value), hint=hint)
+        elif rule.kind == "flag":
+            widget = self._gui.add_checkbox(label, value, hint=hint)
+        elif rule.kind == "integer":
+            widget = self._gui.add_number(label, value, min=int(rule.lower), max=int(rule.upper), step=1, hint=hint)
+        else:
+            widget = self._gui.add_number(label, value, min=rule.lower, max=rule.upper, step=0.001, hint=hint)
+        self._widgets[(section, name)] = widget
+
+        def update(event: viser.GuiEvent[Any]) -> None:
+            if event.client_id is None:
+                return
+            try:
+                self.set_field(section, name, event.target.value)
+            except InputError as error:
+                self._refuse(event.client_id, str(error))
+                self._show_field(section, name)
+
+        widget.on_update(update)
+
+    def set_field(self, section: str, name: str, value: Any) -> None:
+        """A new value of a field from anything a browser may send.
+
+        Raises:
+            InputError: the field refuses the value.
+        """
+        rule = rules(type(getattr(self._app.draft.base, section)))[name]
+        if rule.kind == "numbers":
+            if not isinstance(value, str):
+                raise InputError(f"{section}: {name}: write numbers separated by commas")
+            value = numbers_from_text(value, f"{section}: {name}")
+            # two lists that belong together are changed one after the other: the whole is judged at Start
+            with self._app.lock:
+                self._app.draft.set(section, name, value)
+        else:
+            checked = checked_value(value, rule, f"{section}: {name}")
+            with self._app.lock:
+                self._app.draft.set(section, name, checked)
+        self._app.tell_all("draft")
+
+    def _show_field(self, section: str, name: str) -> None:
+        widget, value = self._widgets[(section, name)], self._app.draft.value(section, name)
+        shown = _list_text(value) if isinstance(value, tuple) else value
+        if widget.value != shown:
+            widget.value = shown
+
+    # ---- presets ---------------------------------------------------------------------------------------------------
+    def _on_preset(self, event: viser.GuiEvent[Any]) -> None:
+        if event.client_id is None:
+            return
+        name = event.target.value
+        if name not in self._preset_names():
+            self._refuse(event.client_id, f"case: {str(name)[:40]!r} is no option")
+            self._preset.value = self._app.draft.base.name
+            return
+        if name in SHIPPED_CASES:
+            with self._app.lock:
+                self._app.draft.base = load_case(name)
+                self._app.draft.reset_all()
+            self._show_all()
+            self._app.tell_all("draft")
+
+    def _on_reset(self, _event: viser.GuiEvent[Any]) -> None:
+        with self._app.lock:
+            self._app.draft.reset_all()
+        self._show_all()
+        self._app.tell_all("draft")
+
+    def _show_all(self) -> None:
+        for key, slider in self._sliders.items():
+            low, high = self._app.draft.value("bounds", key)
+            slider.min, slider.max = min(slider.min, low), max(slider.max, high)
+            slider.value = (self._typed(key, low), self._typed(key, high))
+        for section, name in self._widgets:
+            self._show_field(section, name)
+
+    # ---- drawing ---------------------------------------------------------------------------------------------------
+    def draw(self) -> None:
+        """Readouts, marks of change, and the preset's two lines."""
+        draft = self._app.draft
+        lines = escape(draft.base.description.strip()).replace("\n", "<br>")
+        try:
+            draft.case()
+            trouble = ""
+        except InputError as error:
+            trouble = f'<p class="bad">{escape(str(error))}</p>'
+        count = draft.count()
+        changed = f'<p class="soft">{count} setting{"s" if count != 1 else ""} changed (●)</p>' if count else ""
+        self._about.content = box(
+            f"<p><b>{escape(draft.base.title)}</b></p><p class='soft'>{lines}</p>{changed}{trouble}"
+        )
+        self._reset.visible = count > 0
+        for quantity in VARIABLES:
+            low, high = draft.value("bounds", quantity.key)
+            factor = 100.0 if quantity.unit == "%" else 1.0
+            a, b = number_text(factor * low, quantity.decimals), number_text(factor * high, quantity.decimals)
+            unit = f" {quantity.unit}" if quantity.unit else ""
+            mark = " ●" if draft.changed("bounds", quantity.key) else ""
+            text = f"fixed at {a}{unit}" if low == high else f"{a} … {b}{unit}"
+            self._readouts[quantity.key].content = (
+                f'<div class="hp readout" data-variable="{quantity.key}"><span>{text}</span>'
+                f'<span class="level">{mark}</span></div>'
+            )
+
+
+def _list_text(values: tuple[float, ...]) -> str:
+    return ", ".join(f"{value:g}" for value in values)

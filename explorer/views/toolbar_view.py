@@ -1,0 +1,129 @@
+"""The buttons over the 3D view: camera presets and what is drawn; and the card that names the design shown."""
+
+from __future__ import annotations
+
+from typing import Any
+
+import viser
+
+from explorer.bridge import PageEvent, overlay
+from explorer.quantities import number_text
+from explorer.scene.camera import PRESETS, TITLES
+from explorer.state import Session
+from explorer.views.chips import chip, chips
+from explorer.views.tables import headline
+
+_SWITCHES = (
+    ("ghost", "Ghost", "the initial design (or the first pinned one) as a ghost"),
+    ("topsides", "Topsides", "the hull above the waterline"),
+    ("water", "Water", "the water surface"),
+    ("waves", "Waves", "wave pattern at the chosen condition"),
+    ("pressure", "Pressure", "pressure coefficient on hull and blades, level 2"),
+    ("spin", "Turn", "the propeller turns at a quarter of its real rate"),
+)
+
+
+class ToolbarView:
+    """Camera, switches, theme, screenshot; and the design's card with legends of what is overlaid."""
+
+    def __init__(self, session: Session, gui: viser.GuiApi, client: viser.ClientHandle) -> None:
+        self._session = session
+        self._client = client
+        self._bar = gui.add_html("")
+        self._card = gui.add_html("")
+        session.hub.on(("options", "selection"), self.draw)
+        session.hub.on(("selection", "options", "legend"), self.draw_card)
+        session.handle("act", "switch", self._switch)
+        session.handle("act", "condition", self._condition)
+        session.handle("act", "screenshot", self._screenshot)
+        self.draw()
+        self.draw_card()
+
+    def draw(self) -> None:
+        """The buttons."""
+        options = self._session.options
+        cameras = "".join(chip("camera", TITLES[name], name, on=options.camera == name) for name in PRESETS)
+        switches = "".join(
+            chip("switch", word, name, on=bool(getattr(options, name)), hint=hint) for name, word, hint in _SWITCHES
+        )
+        shown = self._session.selected
+        conditions = ""
+        if shown is not None and len(shown.evaluation.conditions) > 1:
+            conditions = "".join(
+                chip(
+                    "condition",
+                    f"Fn {condition.froude_number:.3f}",
+                    str(index),
+                    on=options.condition == index,
+                    hint="the condition of waves, pressure and rotation",
+                )
+                for index, condition in enumerate(shown.evaluation.conditions)
+            )
+        other = chip("switch", "Dark", "dark", on=options.dark) + chip("screenshot", "Screenshot")
+        self._bar.content = overlay(
+            "toolbar",
+            f'<div class="card">{chips(cameras)}'
+            f'<div style="height:4px"></div>{chips(switches, conditions, other)}</div>',
+        )
+
+    def draw_card(self) -> None:
+        """The design's name and headline numbers, and legends."""
+        shown = self._session.selected
+        if shown is None:
+            self._card.content = overlay("card", '<div class="card">Computing the initial design …</div>')
+            return
+        evaluation = shown.evaluation
+        facts = ""
+        if evaluation.hull is not None:
+            hull = evaluation.hull
+            facts = (
+                f"L {hull.length:.1f} m · B {hull.breadth:.2f} m · d {hull.draft:.2f} m · "
+                f"CB {hull.block_coefficient:.3f} · V {number_text(hull.displaced_volume, 0)} m³<br>"
+                f"D {evaluation.variables.diameter:.2f} m · Z {evaluation.variables.blade_count} · "
+                f"f₁ {number_text(evaluation.objectives.get('f1'), 4)} · "
+                f"f₂ {number_text(evaluation.objectives.get('f2'), 4)}"
+            )
+        legends = "".join(self._session.legends.values())
+        self._card.content = overlay(
+            "card",
+            f'<div class="card" data-card="'
+            f'{shown.design_id if shown.design_id is not None else shown.kind}">'
+            f'{headline(shown)}<br><span class="soft">{facts}</span>{legends}</div>',
+        )
+
+    def _switch(self, event: PageEvent) -> None:
+        options = self._session.options
+        if event.arg == "dark":
+            self._session.set_options(dark=not options.dark)
+        elif event.arg in {name for name, _, _ in _SWITCHES}:
+            self._session.set_options(**{event.arg: not getattr(options, event.arg)})
+
+    def _condition(self, event: PageEvent) -> None:
+        shown = self._session.selected
+        if shown is not None and event.arg.isdecimal() and int(event.arg) < len(shown.evaluation.conditions):
+            self._session.set_options(condition=int(event.arg))
+
+    def _screenshot(self, _event: PageEvent) -> None:
+        self._session.heavy.latest("screenshot", self._take)
+
+    def _take(self) -> None:
+        width, height = self._session.size
+        try:
+            image: Any = self._client.get_render(
+                height=min(max(height, 240), 2160),
+                width=min(max(width, 320), 3840),
+                transport_format="png",
+                timeout=30.0,
+            )
+        except (TimeoutError, RuntimeError) as error:
+            self._session.notify("No screenshot", str(error), "yellow")
+            return
+        import io
+
+        from PIL import Image
+
+        picture = io.BytesIO()
+        Image.fromarray(image).save(picture, format="PNG")
+        shown = self._session.selected
+        name = f"hpsop-{shown.design_id if shown and shown.design_id is not None else 'design'}.png"
+        self._client.send_file_download(name, picture.getvalue(), save_immediately=True)

@@ -1,0 +1,163 @@
+"""What-if: the selection's variables as sliders, level 1 answering live."""
+
+from __future__ import annotations
+
+import math
+import time
+from typing import Any
+
+import viser
+
+from explorer.quantities import VARIABLES, number_text
+from explorer.state import Session, Shown
+from explorer.views.chips import box
+from explorer.views.tables import headline, warnings_html
+from hpsop_core.design import VARIABLE_RULES, DesignVariables
+from hpsop_core.errors import HpsopError, InputError
+
+_STEPS = {
+    "length_to_breadth": 0.01,
+    "breadth_to_draft": 0.01,
+    "draft": 0.01,
+    "diameter": 0.01,
+    "blade_count": 1,
+    "pitch_ratio": 0.001,
+    "displacement_ratio": 0.001,
+    "expanded_area_ratio": 0.001,
+    "buoyancy_centre_shift": 0.0005,
+}
+_REACH = {
+    "length_to_breadth": (5.5, 9.5),
+    "breadth_to_draft": (2.5, 5.0),
+    "draft": (11.0, 17.0),
+    "diameter": (7.0, 11.0),
+    "blade_count": (3, 7),
+    "pitch_ratio": (0.7, 1.3),
+    "displacement_ratio": (0.8, 1.2),
+    "expanded_area_ratio": (0.35, 1.1),
+    "buoyancy_centre_shift": (-0.025, 0.025),
+}
+
+
+class WhatIfView:
+    """Sliders that follow the selection until they are moved, and then lead it."""
+
+    def __init__(self, session: Session, gui: viser.GuiApi) -> None:
+        self._session = session
+        self._answered: list[float] = []
+        self._html = gui.add_html("")
+        self._sliders: dict[str, Any] = {}
+        for quantity in VARIABLES:
+            low, high = _REACH[quantity.key]
+            rule = VARIABLE_RULES[quantity.key]
+            kind = int if rule.kind == "integer" else float
+            unit = f" [{quantity.unit}]" if quantity.unit and quantity.unit != "%" else ""
+            slider = gui.add_slider(
+                quantity.symbol + unit, kind(low), kind(high), kind(_STEPS[quantity.key]), kind(low), hint=rule.meaning
+            )
+            slider.on_update(self._moved)
+            self._sliders[quantity.key] = slider
+        self._level2 = gui.add_button("Evaluate at level 2", hint="Rankine panels and blade panels, about a second")
+        self._add = gui.add_button("Add to the run's archive as a hand-made design", color="gray")
+        self._level2.on_click(self._on_level2)
+        self._add.on_click(self._on_add)
+        session.hub.on(("selection",), self._follow)
+        session.hub.on(("run",), self._show_buttons)
+        self._follow()
+        self._show_buttons()
+
+    def _variables(self) -> DesignVariables:
+        values: dict[str, object] = {}
+        for key, slider in self._sliders.items():
+            value = slider.value
+            if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
+                raise InputError(f"what-if: {key} is not a finite number; move its slider")
+            # A browser may send anything; the slider's own range is the limit.
+            clamped = min(max(value, slider.min), slider.max)
+            values[key] = round(clamped) if VARIABLE_RULES[key].kind == "integer" else float(clamped)
+        return DesignVariables.from_dict(values, "what-if")
+
+    def _follow(self) -> None:
+        shown = self._session.selected
+        if shown is None:
+            return
+        if shown.kind != "whatif":
+            for key, slider in self._sliders.items():
+                value = getattr(shown.evaluation.variables, key)
+                if value < slider.min:
+                    slider.min = value
+                if value > slider.max:
+                    slider.max = value
+                slider.value = value
+        self._draw(shown)
+
+    def _draw(self, shown: Shown) -> None:
+        if shown.kind != "whatif":
+            self._html.content = box(
+                f'<p>{headline(shown)}</p><p class="soft">Move a slider: level 1 answers at once, and the hull, the '
+                "propeller, the curves and the table follow.</p>"
+            )
+            return
+        evaluation = shown.evaluation
+        facts = "".join(
+            f"<span>{name}</span><span>{text}</span>"
+            for name, text in (
+                ("f₁", number_text(evaluation.objectives.get("f1"), 4)),
+                ("f₂", number_text(evaluation.objectives.get("f2"), 4)),
+                *(
+                    (
+                        f"condition {index + 1}: Rt, PD",
+                        f"{number_text(1e-3 * item.total_resistance, 0)} kN, {number_text(1e-6 * item.delivered_power, 2)} MW",
+                    )
+                    for index, item in enumerate(evaluation.conditions)
+                ),
+            )
+        )
+        recent = [moment for moment in self._answered if moment > time.monotonic() - 2.0]
+        rate = f'<p class="soft">{len(recent) / 2.0:.0f} answers a second</p>' if len(recent) > 4 else ""
+        self._html.content = box(
+            f"<p>{headline(shown)}</p>{warnings_html(shown)}<div class='facts'>{facts}</div>{rate}"
+        )
+
+    def _moved(self, event: viser.GuiEvent[Any]) -> None:
+        if event.client_id is not None:
+            self._session.worker.latest("what-if", self._answer)
+
+    def _answer(self, level: int = 1) -> None:
+        try:
+            shown = self._session.app.whatif(self._variables(), level)
+        except HpsopError as error:
+            self._session.notify("What-if", str(error), "yellow")
+            return
+        if shown is None:
+            return
+        self._answered = [*self._answered[-40:], time.monotonic()]
+        self._session.select(shown)
+
+    def _on_level2(self, _event: viser.GuiEvent[Any]) -> None:
+        def work() -> None:
+            self._level2.disabled = True
+            try:
+                self._answer(2)
+            finally:
+                self._level2.disabled = False
+
+        self._session.heavy.latest("what-if level 2", work)
+
+    def _on_add(self, _event: viser.GuiEvent[Any]) -> None:
+        shown = self._session.selected
+        if shown is None:
+            return
+
+        def work() -> None:
+            try:
+                design_id = self._session.app.services.add_by_hand(shown.evaluation)
+            except HpsopError as error:
+                self._session.notify("Not added", str(error), "yellow")
+                return
+            self._session.notify("Added", f"Design {design_id} stands in the archive, marked as made by hand.", "green")
+
+        self._session.worker.every(work)
+
+    def _show_buttons(self) -> None:
+        self._add.disabled = not self._session.app.services.can_add_by_hand()
