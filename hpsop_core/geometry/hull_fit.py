@@ -178,8 +178,9 @@ def fit_patch(
     *,
     samples: int = 81,
     rounds: int = 4,
-    smoothing: float = 2e-3,
+    smoothing: float = 5e-2,
     least_half_breadth: float = 2e-3,
+    edge: Array | None = None,
 ) -> PatchFit:
     """Fit y and z of a control net to sections by least squares with parameter correction.
 
@@ -192,6 +193,8 @@ def fit_patch(
         rounds: corrections of v by projection.
         smoothing: weight of the second differences of the net; it only decides what the points leave open.
         least_half_breadth: free control points keep this distance from the centreplane, m: the sides never cross.
+        edge: control points (nv, 3) of a shared edge in u; sections then spread v along their girth as that edge does,
+            so that parameter lines run on smoothly from the neighbour.
 
     Returns:
         The surface and the deviation of the given points.
@@ -202,6 +205,8 @@ def fit_patch(
     points = np.concatenate([*dense, *(section.points for section in sections)])
     u = np.concatenate([np.repeat(u_of, samples), np.repeat(u_of, [len(s.points) for s in sections])])
     v = np.concatenate([np.tile(fractions, len(sections)), *(s.chord_fractions() for s in sections)])
+    if edge is not None:
+        v = _spread_of(knots_v, edge)(v)
     pinned = (v == 0.0) | (v == 1.0)
     weight = np.where(pinned, 4.0, 1.0)
     nu, nv = len(stations.control_x), len(knots_v) - DEGREE - 1
@@ -223,6 +228,16 @@ def fit_patch(
         raise ValueError("a fit needs at least one round")
     given = len(sections) * samples
     return _deviation(surface, u[given:], v[given:], points[given:], pinned[given:])
+
+
+def _spread_of(knots_v: Array, edge: Array) -> PchipInterpolator:
+    """v as a function of the chord fraction along an edge curve."""
+    v = np.linspace(0.0, 1.0, 401)
+    points = basis_matrix(knots_v, DEGREE, v) @ edge
+    steps = np.maximum(np.linalg.norm(np.diff(points, axis=0), axis=1), 1e-9)
+    fraction = np.concatenate([[0.0], np.cumsum(steps)]) / np.sum(steps)
+    fraction[-1] = 1.0
+    return PchipInterpolator(fraction, v)
 
 
 def _solve(design: sparse.csr_matrix, target: Array, rough: sparse.csr_matrix, fixed: Array) -> Array:

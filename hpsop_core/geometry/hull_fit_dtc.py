@@ -44,22 +44,18 @@ TRANSOM_X, COUNTER_X, BOSS_X, APERTURE_X, STEM_X, NOSE_X = -6.743, -0.829, 9.2, 
 SHAFT_HEIGHT, BOSS_RADIUS = 5.0, 0.40
 CROWN_FROM, CROWN_ROOM = 14.2, 0.2
 
+# Knots of x(u). No span is shorter than the spacing of the data: shorter ones would be free to wave between stations.
 MAIN_STATIONS = [
-    15.25, 15.42, 15.9, 16.6, 17.5, 18.6, 20.0, 21.6, 23.4, 25.4, 27.6, 30.2, 33.2, 36.6, 40.4, 44.8, 50.0, 56.0, 63.0,
+    15.25, 15.9, 16.8, 17.9, 19.2, 20.8, 22.6, 24.6, 27.0, 29.8, 33.0, 36.5, 40.4, 44.8, 50.0, 56.0, 63.0,
     71.0, 80.0, 90.0, 101.0, 113.0, 126.0, 139.0, 152.0, 165.0, 178.0, 191.0, 204.0, 217.0, 230.0, 242.5, 254.5,
-    266.0, 276.5, 286.0, 294.5, 302.0, 311.5, 319.5, 326.5, 332.5, 337.5,
-    341.7, 345.2, 348.0, 350.2, 352.0, 353.3, 354.2, 354.75, 355.03, 355.12,
+    266.0, 276.5, 286.0, 294.5, 302.0, 311.5, 319.5, 326.5, 332.5, 337.5, 341.7, 345.2, 348.2, 350.6, 352.5, 353.9,
+    354.75, 355.12,
 ]  # fmt: skip
-COUNTER_STATIONS = [COUNTER_X, 0.0, 1.2, 2.8, 4.6, 6.4, 8.2, 9.8, 11.2, 12.4, 13.4, 14.2, 14.75, 15.1, 15.25]
-SKEG_STATIONS = [
-    9.2, 9.24, 9.36, 9.55, 9.82, 10.15, 10.5, 10.9, 11.4, 12.0, 12.7, 13.4, 14.05, 14.6, 15.0, 15.19, 15.25
-]  # fmt: skip
-BULB_STATIONS = [
-    355.12, 355.18, 355.36, 355.62, 356.0, 356.6, 357.4, 358.5, 359.8, 361.1, 362.3, 363.4, 364.3, 365.0, 365.5, 365.83,
-    366.01, 366.07,
-]  # fmt: skip
+COUNTER_STATIONS = [COUNTER_X, 0.4, 1.9, 3.6, 5.4, 7.2, 9.0, 10.6, 12.0, 13.2, 14.2, 14.9, 15.25]
+SKEG_STATIONS = [9.2, 9.5, 9.95, 10.5, 11.15, 11.9, 12.7, 13.5, 14.25, 14.85, 15.25]
+BULB_STATIONS = [355.12, 355.55, 356.2, 357.1, 358.3, 359.7, 361.1, 362.4, 363.6, 364.6, 365.35, 365.85, 366.07]
 STERN_STATIONS = [TRANSOM_X, -5.3, -3.8, -2.3, COUNTER_X]
-BOW_STATIONS = [355.12, 355.3, 355.7, 356.4, 357.5, 359.0, 360.6, 362.2, 363.6, 364.7, 365.5, 365.93, 366.07]
+BOW_STATIONS = [355.12, 355.65, 356.5, 357.7, 359.2, 360.7, 362.2, 363.6, 364.7, 365.55, 366.07]
 
 MAIN_GIRTH = [0.05, 0.1, 0.15, 0.2, 0.3, 0.37, 0.43, 0.48, 0.53, 0.58, 0.63, 0.67, 0.71, 0.75, 0.79, 0.83, 0.87, 0.91,
               0.95]  # fmt: skip
@@ -229,7 +225,7 @@ def fit_underwater(data: DtcData) -> tuple[dict[str, PatchFit], dict[str, list[A
     """The four patches below the design waterline, and which stretch of the main patch's v each one's v is."""
     fits: dict[str, PatchFit] = {}
     aperture, post_start, post_end = aperture_section(data)
-    stations = StationMap.through(MAIN_STATIONS, True, True)
+    stations = StationMap.through(MAIN_STATIONS, False, False)
     girth = sorted(
         [k for k in MAIN_GIRTH if abs(k - post_start) > 0.02 and not post_start <= k <= post_end + 0.02]
         + [post_start - 0.015, post_start, post_end, post_end + 0.02]
@@ -245,27 +241,27 @@ def fit_underwater(data: DtcData) -> tuple[dict[str, PatchFit], dict[str, list[A
     fits["main"] = fit_patch([aperture, *main_sections(data)], stations, knots, fixed_y, fixed_z)
     net = fits["main"].surface.control_points
 
-    stations = StationMap.through(COUNTER_STATIONS, False, True)
+    stations = StationMap.through(COUNTER_STATIONS, False, False)
     knots_c, edge = edge_segment(knots, net[0], post_end, 1.0, np.array([]))
     fixed_y, fixed_z = free_net(stations, knots_c)
     fixed_y[:, 0], fixed_z[:, -1] = 0.0, WATERLINE
     fixed_y[0], fixed_z[0] = 0.0, WATERLINE
     fixed_y[-1], fixed_z[-1] = edge[:, 1], edge[:, 2]
-    fits["counter"] = fit_patch(counter_sections(data), stations, knots_c, fixed_y, fixed_z)
+    fits["counter"] = fit_patch(counter_sections(data), stations, knots_c, fixed_y, fixed_z, edge=edge)
 
-    stations = StationMap.through(SKEG_STATIONS, True, True)
+    stations = StationMap.through(SKEG_STATIONS, True, False)
     knots_s, edge = edge_segment(knots, net[0], 0.0, post_start, np.linspace(0.1, 0.9, 9))
     fixed_y, fixed_z = free_net(stations, knots_s)
     fixed_y[:, 0], fixed_y[:, -1] = 0.0, 0.0
     fixed_y[-1], fixed_z[-1] = edge[:, 1], edge[:, 2]
-    fits["skeg"] = fit_patch(skeg_sections(data), stations, knots_s, fixed_y, fixed_z)
+    fits["skeg"] = fit_patch(skeg_sections(data), stations, knots_s, fixed_y, fixed_z, edge=edge)
 
-    stations = StationMap.through(BULB_STATIONS, True, True)
+    stations = StationMap.through(BULB_STATIONS, False, True)
     fixed_y, fixed_z = free_net(stations, knots)
     fixed_y[:, 0], fixed_y[:, -1] = 0.0, 0.0
     fixed_y[0], fixed_z[0] = net[-1, :, 1], net[-1, :, 2]
     fixed_y[-1], fixed_z[-1] = 0.0, float(data.lines["keel"](NOSE_X))
-    fits["bulb"] = fit_patch(bulb_sections(data), stations, knots, fixed_y, fixed_z)
+    fits["bulb"] = fit_patch(bulb_sections(data), stations, knots, fixed_y, fixed_z, edge=net[-1])
     girth_of = {
         "main": ["main", 0.0, 1.0],
         "counter": ["main", post_end, 1.0],
@@ -279,7 +275,9 @@ def fit_topsides(data: DtcData, under: dict[str, PatchFit]) -> tuple[dict[str, P
     """The four patches between the design waterline and the deck, and whose v each one's v is."""
     fits: dict[str, PatchFit] = {}
     stem = (float(data.lines["stem"](STEM_X)) - WATERLINE) / np.hypot(DECK - WATERLINE, float(data.column(STEM_X)[-1]))
-    girth = sorted([k for k in TOPSIDES_GIRTH if abs(k - stem) > 0.025] + [float(stem)])
+    # The section opens at once where the stem leaves the centreplane: knots close above it let it.
+    near = [float(stem) + step for step in (0.0, 0.02, 0.045, 0.08)]
+    girth = sorted([k for k in TOPSIDES_GIRTH if not stem - 0.025 < k < stem + 0.1] + near)
     knots = knots_at(girth)
     main, counter = under["main"].surface, under["counter"].surface
 
@@ -288,7 +286,11 @@ def fit_topsides(data: DtcData, under: dict[str, PatchFit]) -> tuple[dict[str, P
     fixed_y[:, 0], fixed_z[:, 0] = main.control_points[:, -1, 1], WATERLINE
     fixed_z[:, -1] = DECK
     fixed_y[-1, : int(np.searchsorted(knots, stem, side="right"))] = 0.0
-    fits["topsides_mid"] = fit_patch(topsides_sections(data, APERTURE_X, STEM_X), stations, knots, fixed_y, fixed_z)
+    # Its foremost section runs up the stem before it opens.
+    bow = topsides_sections(data, STEM_X, NOSE_X)[0]
+    post = np.column_stack([np.zeros(4), np.linspace(WATERLINE, bow.points[0, 1], 5)[:-1]])
+    sections = [*topsides_sections(data, APERTURE_X, STEM_X), Section(STEM_X, np.vstack([post, bow.points]))]
+    fits["topsides_mid"] = fit_patch(sections, stations, knots, fixed_y, fixed_z)
     mid = fits["topsides_mid"].surface.control_points
 
     stations = StationMap(counter.knots_u, counter.control_points[:, 0, 0])
@@ -296,22 +298,25 @@ def fit_topsides(data: DtcData, under: dict[str, PatchFit]) -> tuple[dict[str, P
     fixed_y[:, 0], fixed_z[:, 0] = counter.control_points[:, -1, 1], WATERLINE
     fixed_z[:, -1] = DECK
     fixed_y[-1], fixed_z[-1] = mid[0, :, 1], mid[0, :, 2]
-    fits["topsides_aft"] = fit_patch(topsides_sections(data, COUNTER_X, APERTURE_X), stations, knots, fixed_y, fixed_z)
+    sections = topsides_sections(data, COUNTER_X, APERTURE_X)
+    fits["topsides_aft"] = fit_patch(sections, stations, knots, fixed_y, fixed_z, edge=mid[0])
     aft = fits["topsides_aft"].surface.control_points
 
     stations = StationMap.through(STERN_STATIONS, False, False)
     fixed_y, fixed_z = free_net(stations, knots)
     fixed_y[:, 0], fixed_z[:, -1] = 0.0, DECK
     fixed_y[-1], fixed_z[-1] = aft[0, :, 1], aft[0, :, 2]
-    fits["topsides_stern"] = fit_patch(topsides_sections(data, TRANSOM_X, COUNTER_X), stations, knots, fixed_y, fixed_z)
+    sections = topsides_sections(data, TRANSOM_X, COUNTER_X)
+    fits["topsides_stern"] = fit_patch(sections, stations, knots, fixed_y, fixed_z, edge=aft[0])
 
-    stations = StationMap.through(BOW_STATIONS, True, True)
+    stations = StationMap.through(BOW_STATIONS, False, True)
     knots_b, edge = edge_segment(knots, mid[-1], float(stem), 1.0, np.array([]))
     fixed_y, fixed_z = free_net(stations, knots_b)
     fixed_y[:, 0], fixed_z[:, -1] = 0.0, DECK
     fixed_y[0], fixed_z[0] = edge[:, 1], edge[:, 2]
     fixed_y[-1], fixed_z[-1] = 0.0, DECK
-    fits["topsides_bow"] = fit_patch(topsides_sections(data, STEM_X, NOSE_X)[1:], stations, knots_b, fixed_y, fixed_z)
+    sections = topsides_sections(data, STEM_X, NOSE_X)[1:]
+    fits["topsides_bow"] = fit_patch(sections, stations, knots_b, fixed_y, fixed_z, edge=edge)
     girth_of: dict[str, list[Any]] = {name: ["topsides_mid", 0.0, 1.0] for name in fits}
     girth_of["topsides_bow"] = ["topsides_mid", float(stem), 1.0]
     return fits, girth_of

@@ -22,7 +22,7 @@ Resolution = Literal["drag", "view", "export"]
 # Cells along and across a whole hull side below and above the waterline: main length, short patches, girths.
 _COUNTS: dict[str, tuple[int, int, int, int]] = {
     "drag": (64, 14, 26, 8),
-    "view": (112, 24, 36, 14),
+    "view": (112, 24, 36, 22),
     "export": (280, 60, 96, 32),
 }
 # m in the parent: neighbours agree to the rounding of the stored control points; the centreplane is met exactly.
