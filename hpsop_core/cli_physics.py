@@ -82,11 +82,11 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     if arguments.json:
         print_json(result.as_dict())
     else:
-        _print_evaluation(result)
+        print_evaluation(result)
     return 0 if result.ok else 1
 
 
-def _print_evaluation(result: Evaluation) -> None:
+def print_evaluation(result: Evaluation) -> None:
     print(f"{result.case}, level {result.level}: {result.status}{' - ' + result.reason if result.reason else ''}")
     print("\n".join(describe_variables(result.variables)))
     if result.hull is None or not result.conditions:

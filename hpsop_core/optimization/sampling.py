@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import numpy as np
-from scipy.stats import qmc
 
 from hpsop_core.design import DesignSpace
 from hpsop_core.typing_aliases import Array
@@ -33,6 +32,8 @@ def latin_hypercube(space: DesignSpace, count: int, seed: int) -> Array:
     Returns:
         Vectors over the free variables, shape (count, free).
     """
+    from scipy.stats import qmc  # a slow import that only the beginning of a level needs
+
     free = len(space.free)
     if count == 0:
         return np.zeros((0, free))

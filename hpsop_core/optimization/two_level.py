@@ -14,7 +14,6 @@ Everything is a function of the settings, the seed and the answers told: to resu
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
 
 import numpy as np
 
@@ -22,6 +21,7 @@ from hpsop_core.case_sections import OptimizationSection
 from hpsop_core.design import DesignSpace, DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.optimization.decision import compromise, knee
+from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.indicators import FrontArchive, feasible_share, hypervolume, spread
 from hpsop_core.optimization.nsga2 import Nsga2, Operators
 from hpsop_core.optimization.problem import Candidate, Outcome, algorithm_view
@@ -29,38 +29,6 @@ from hpsop_core.optimization.sampling import derived_seed, latin_hypercube
 from hpsop_core.typing_aliases import Array
 
 _SAMPLE, _SEARCH = 0, 1  # purposes of derived seeds
-
-
-@dataclass(frozen=True)
-class Generation:
-    """What a generation came to. Ids are evaluations of the run.
-
-    Attributes:
-        number: from 1.
-        level: 1 or 2.
-        asked: the designs of this generation, in the order asked.
-        members: the population that survived, best first.
-        front: the non-dominated feasible members, ascending in f1: NSGA-II's Pareto front.
-        hypervolume: of the front, below (1.2, 1.2). Crowding may take a design off a full front: it can fall a little.
-        spread: of the front; None for fewer than three designs.
-        feasible_share: of the members.
-        failures: failed evaluations among the designs asked.
-        compromise, knee: of the front; None if it is empty.
-        note: "" or why the level ends here.
-    """
-
-    number: int
-    level: int
-    asked: tuple[int, ...]
-    members: tuple[int, ...]
-    front: tuple[int, ...]
-    hypervolume: float
-    spread: float | None
-    feasible_share: float
-    failures: int
-    compromise: int | None
-    knee: int | None
-    note: str
 
 
 class TwoLevelSearch:

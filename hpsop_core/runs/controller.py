@@ -15,7 +15,7 @@ from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation_result import Evaluation
 from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.events import RunEvent, RunSnapshot
-from hpsop_core.runs.executor import make_workers
+from hpsop_core.runs.executor import checked_executor, make_workers
 from hpsop_core.runs.reader import RunReader, open_run
 from hpsop_core.runs.replay import RunDriver
 from hpsop_core.runs.store import RunStore
@@ -61,12 +61,16 @@ class RunController:
         physics: Physics | None = None,
     ) -> None:
         self.path = Path(run_path)
+        checked_executor(executor, workers)
         self._workers, self._executor = workers, executor
         self._physics = physics
         self._control = RunControl()
         self._callbacks: list[Callable[[RunEvent], None]] = []
         self._guard = threading.RLock()
         self._thread: threading.Thread | None = None
+        # Not Thread.join: an interrupt in the middle of it makes Python 3.11 believe that the thread has ended.
+        self._ended = threading.Event()
+        self._ended.set()
         self._driver: RunDriver | None = None
         self._error: BaseException | None = None
         asked = {
@@ -116,7 +120,7 @@ class RunController:
     def start(self) -> None:
         """Start, or start again after a stop or the end; resume if it is paused."""
         with self._guard:
-            if self._thread is not None and self._thread.is_alive():
+            if self.running:
                 self._control.resume()
                 return
             self._control = RunControl()
@@ -128,6 +132,7 @@ class RunController:
                 self._control,
                 self._emit,
             )
+            self._ended.clear()
             self._thread = threading.Thread(target=self._drive, args=(self._driver,), name="hpsop-run", daemon=True)
             self._thread.start()
 
@@ -139,6 +144,8 @@ class RunController:
         except Exception as error:  # noqa: BLE001 - raised again by wait(), in the thread that wants to know
             self._error = error
             _log.exception("the run ended by an error of the program")
+        finally:
+            self._ended.set()
 
     def pause(self) -> None:
         """Start no more evaluations; those under way finish and are kept. Acts within one evaluation."""
@@ -187,11 +194,8 @@ class RunController:
         Raises:
             HpsopError: why it ended before its end; whatever else went wrong in it.
         """
-        thread = self._thread
-        if thread is not None:
-            thread.join(seconds)
-            if thread.is_alive():
-                return False
+        if not self._ended.wait(seconds):
+            return False
         if self._error is not None:
             raise self._error
         return True
@@ -200,9 +204,8 @@ class RunController:
         """Stop, wait for what is under way, and give the file back. No process is left behind."""
         _open_controllers.discard(self)
         self._control.stop()
-        thread = self._thread
-        if thread is not None and thread is not threading.current_thread():
-            thread.join()
+        if threading.current_thread() is not self._thread:
+            self._ended.wait()
         self._store.close()
 
     def __enter__(self) -> RunController:
@@ -214,9 +217,14 @@ class RunController:
     # -- what it tells ---------------------------------------------------------------------------------------------
 
     @property
+    def begun(self) -> bool:
+        """Whether this controller began the run, rather than continuing it."""
+        return self._store.created
+
+    @property
     def running(self) -> bool:
         """Whether the run is being driven (pauses included)."""
-        return self._thread is not None and self._thread.is_alive()
+        return not self._ended.is_set()
 
     @property
     def error(self) -> BaseException | None:

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, TypeAlias
 
-from hpsop_core.optimization.two_level import Generation
+from hpsop_core.optimization.generation import Generation
 
 State: TypeAlias = Literal["new", "running", "paused", "stopped", "finished", "failed"]
 """new: not started; paused: waits for ``resume`` (or for room on the disk: see the reason); stopped: ended before the

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import concurrent.futures
 import contextlib
+import importlib.util
 import multiprocessing
 import multiprocessing.forkserver
 import os
@@ -12,15 +13,15 @@ from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from typing import Any, Protocol
 
-from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.errors import InputError
 from hpsop_core.runs.tasks import start_worker, warm_up_task
 
 _START_LIMIT = 120.0  # seconds for all workers of a pool to import what they need
 _THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 
 
-class WorkersUnavailableError(HpsopError):
-    """No worker can be had: processes cannot start, or the cluster does not answer."""
+class WorkersUnavailableError(InputError):
+    """No worker can be had: processes cannot start, or the cluster that was named does not answer."""
 
 
 class Workers(Protocol):
@@ -67,13 +68,10 @@ class LocalWorkers:
         count: of processes.
 
     Raises:
-        InputError: count is below 1.
         WorkersUnavailableError: the processes cannot start.
     """
 
     def __init__(self, count: int) -> None:
-        if count < 1:
-            raise InputError(f"--workers {count}: give 1 or more")
         self._count = count
         self._pool: ProcessPoolExecutor | None = None
         self._processes: set[int] = set()
@@ -93,7 +91,7 @@ class LocalWorkers:
         if "forkserver" in multiprocessing.get_all_start_methods():
             method = "forkserver"
             multiprocessing.forkserver.set_forkserver_preload(["hpsop_core.runs.preload"])
-            with _one_thread_environment():
+            with _one_thread_environment(), _interrupt_blocked():
                 multiprocessing.forkserver.ensure_running()
         else:
             method = "spawn"
@@ -145,15 +143,12 @@ class DaskWorkers:
         address: "HOST:PORT" of the scheduler.
 
     Raises:
-        InputError: Dask is not installed.
         WorkersUnavailableError: the scheduler does not answer, or has no workers.
     """
 
     def __init__(self, address: str) -> None:
-        try:
-            import distributed
-        except ImportError as error:
-            raise InputError("--executor dask: Dask is not installed; pip install 'hpsop[dask]'") from error
+        import distributed  # an optional dependency, and slow to import
+
         client: Any = distributed.Client
         self._address = address
         target = address if "://" in address else f"tcp://{address}"
@@ -200,6 +195,26 @@ class DaskWorkers:
         self._client.close(timeout=5)
 
 
+def checked_executor(executor: str, count: int | None) -> str:
+    """The address of "dask:HOST:PORT", or "" for "local".
+
+    Raises:
+        InputError: no such executor, or a number of workers that it cannot have.
+    """
+    kind, _, address = executor.partition(":")
+    if count is not None and count < 1:
+        raise InputError(f"--workers {count}: give 1 or more")
+    if executor == "local":
+        return ""
+    if kind != "dask" or not address:
+        raise InputError(f"--executor {executor}: write local or dask:HOST:PORT")
+    if count is not None:
+        raise InputError("--workers: the Dask cluster decides how many; leave it away with --executor dask")
+    if importlib.util.find_spec("distributed") is None:
+        raise InputError("--executor dask: Dask is not installed; pip install 'hpsop[dask]'")
+    return address
+
+
 def make_workers(executor: str, count: int | None) -> Workers:
     """Workers as ``--executor`` and ``--workers`` name them.
 
@@ -208,17 +223,13 @@ def make_workers(executor: str, count: int | None) -> Workers:
         count: local processes; all cores by default.
 
     Raises:
-        InputError: no such executor.
+        InputError: as ``checked_executor``.
         WorkersUnavailableError: they cannot be had.
     """
-    kind, _, address = executor.partition(":")
-    if kind == "local" and not address:
-        return LocalWorkers(default_workers() if count is None else count)
-    if kind == "dask" and address:
-        if count is not None:
-            raise InputError("--workers: the Dask cluster decides; leave it away with --executor dask")
+    address = checked_executor(executor, count)
+    if address:
         return DaskWorkers(address)
-    raise InputError(f"--executor {executor}: write local or dask:HOST:PORT")
+    return LocalWorkers(default_workers() if count is None else count)
 
 
 @contextlib.contextmanager
@@ -233,3 +244,13 @@ def _one_thread_environment() -> Iterator[None]:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
+
+
+@contextlib.contextmanager
+def _interrupt_blocked() -> Iterator[None]:
+    # A process inherits the mask: Ctrl-C in the terminal shall not tear the fork server out of its imports.
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)

@@ -14,7 +14,7 @@ from hpsop_core.case import Case, case_from_toml
 from hpsop_core.design import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.optimization.decision import compromise
-from hpsop_core.optimization.two_level import Generation
+from hpsop_core.optimization.generation import Generation
 from hpsop_core.runs.lock import is_being_written
 from hpsop_core.runs.records import (
     ArchivePoint,

@@ -11,8 +11,8 @@ from typing import Any
 from hpsop_core.design import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.problem import Outcome
-from hpsop_core.optimization.two_level import Generation
 
 
 @dataclass(frozen=True)

@@ -15,8 +15,9 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.problem import Candidate, Outcome
-from hpsop_core.optimization.two_level import Generation, TwoLevelSearch
+from hpsop_core.optimization.two_level import TwoLevelSearch
 from hpsop_core.runs.batch import BatchEvaluator
 from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.events import RunEvent, RunSnapshot, State

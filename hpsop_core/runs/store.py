@@ -16,8 +16,8 @@ from hpsop_core.case import Case, case_from_toml
 from hpsop_core.design import DesignVariables
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.problem import Candidate, Outcome
-from hpsop_core.optimization.two_level import Generation
 from hpsop_core.runs.lock import WriterLock
 from hpsop_core.runs.records import (
     generation_from_text,
