@@ -7,11 +7,13 @@ a point at radius r is (x, r sin theta, r cos theta). Lengths are in tip radii (
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 
 from hpsop_core.geometry.propeller import Propeller
 from hpsop_core.geometry.propeller_sections import half_thickness, mean_line
-from hpsop_core.geometry.radial_table import BladeSections
+from hpsop_core.geometry.radial_table import BladeSections, RadialTable
 from hpsop_core.typing_aliases import Array
 
 
@@ -92,6 +94,27 @@ def section_points(
     camber = sections.camber_ratio[:, None] * mean_line(fraction)
     across = chord * (camber + sign * thickness * half_thickness(fraction))
     return along, across
+
+
+TIP_CHORD_RATIO = 0.02
+"""Chord over D of the finite tip that meshes and CAD surfaces have where the table's chord goes to zero."""
+
+_TIP_CLOSING_RADIUS = 0.99
+
+
+def finite_tip_sections(table: RadialTable, radius_ratio: Array) -> BladeSections:
+    """Sections for shapes that must have an area: a short tip chord, and no thickness at the very tip.
+
+    The chord is sqrt(c^2 + c_tip^2 w) with w = ((r - r_h)/(R - r_h))^16, so that nothing but the last 2 % of the radius
+    changes visibly; the thickness keeps its absolute value and closes elliptically over the last 1 %.
+    """
+    sections = table.at(radius_ratio)
+    hub = table.hub_ratio
+    outward = np.clip((radius_ratio - hub) / (1.0 - hub), 0.0, 1.0)
+    chord = np.sqrt(sections.chord_ratio**2 + TIP_CHORD_RATIO**2 * outward**16)
+    closing = np.clip((radius_ratio - _TIP_CLOSING_RADIUS) / (1.0 - _TIP_CLOSING_RADIUS), 0.0, 1.0)
+    thickness = sections.thickness_ratio * (sections.chord_ratio / chord) * np.sqrt(1.0 - closing**2)
+    return replace(sections, chord_ratio=chord, thickness_ratio=thickness)
 
 
 def rotate_blade(points: Array, blade: int, blade_count: int) -> Array:

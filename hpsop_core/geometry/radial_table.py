@@ -105,14 +105,14 @@ class RadialTable:
     def _interpolant(self) -> PchipInterpolator:
         abscissa = np.sqrt(np.maximum(1.0 - self.radius_ratio, 0.0))[::-1]
         columns = np.stack([getattr(self, name)[::-1] for name in _COLUMNS], axis=1)
-        return PchipInterpolator(abscissa, columns, axis=0, extrapolate=False)
+        return PchipInterpolator(abscissa, columns, axis=0, extrapolate=True)
 
     def at(self, radius_ratio: Array) -> BladeSections:
-        """The sections at ``radius_ratio`` (any shape), held constant inside the hub and at the tip."""
+        """The sections at ``radius_ratio`` (any shape), continued smoothly to 0.9 of the hub's radius and held there."""
         radius = np.asarray(radius_ratio, dtype=np.float64)
-        inside = np.clip(radius, self.radius_ratio[0], 1.0)
-        abscissa = np.minimum(np.sqrt(1.0 - inside), np.sqrt(1.0 - self.radius_ratio[0]))
-        values = np.asarray(self._interpolant(abscissa), dtype=np.float64)
+        values = np.asarray(
+            self._interpolant(np.sqrt(1.0 - np.clip(radius, 0.9 * self.hub_ratio, 1.0))), dtype=np.float64
+        )
         columns = {name: values[..., i] for i, name in enumerate(_COLUMNS)}
         return BladeSections(radius_ratio=radius, **columns)
 

@@ -1,0 +1,97 @@
+"""Blade and hub as NURBS surfaces, for exchange with CAD.
+
+Metres, propeller axes. The blade's surface runs from a little inside the hub to the finite tip; its trailing edge is
+closed and sharp, the fillet at the root is in the meshes only.
+"""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import make_interp_spline
+
+from hpsop_core.geometry.nurbs import NurbsSurface
+from hpsop_core.geometry.propeller import Propeller
+from hpsop_core.geometry.propeller_hub import hub_of
+from hpsop_core.geometry.propeller_sections import cosine_chord_fractions
+from hpsop_core.geometry.propeller_surface import blade_points, finite_tip_sections
+from hpsop_core.typing_aliases import Array
+
+_DEGREE = 3
+_ROOT_DEPTH = 0.9
+_SPAN_STATIONS = 49
+_CHORD_STATIONS = 33
+_HUB_STATIONS = 25
+
+
+@dataclass(frozen=True, eq=False)
+class BladeSurface:
+    """The key blade as a bicubic B-spline surface.
+
+    Attributes:
+        surface: u from root to tip, v from the trailing edge over the back to the leading edge and over the face back.
+        largest_deviation: from the sections' own points between the interpolated ones, m.
+    """
+
+    surface: NurbsSurface
+    largest_deviation: float
+
+
+def _radii(propeller: Propeller, count: int) -> Array:
+    """Radii from inside the hub to the tip, denser towards the tip, where the chord is a root of the distance."""
+    start = _ROOT_DEPTH * propeller.hub_ratio
+    radii = 1.0 - (1.0 - start) * (np.arange(count)[::-1] / (count - 1)) ** 2
+    radii[0], radii[-1] = start, 1.0
+    return np.asarray(radii)
+
+
+def _outline(propeller: Propeller, radii: Array, chord_points: int) -> Array:
+    """Closed sections (nr, 2 nc - 1, 3) in m."""
+    sections = finite_tip_sections(propeller.table, radii)
+    fractions = cosine_chord_fractions(chord_points)
+    back, face = blade_points(sections, fractions, True), blade_points(sections, fractions, False)
+    return np.concatenate([back[:, ::-1], face[:, 1:]], axis=1) * (0.5 * propeller.diameter)
+
+
+def blade_nurbs(propeller: Propeller) -> BladeSurface:
+    """Interpolate the key blade by a bicubic B-spline surface and measure how far it is off in between."""
+    grid = _outline(propeller, _radii(propeller, _SPAN_STATIONS), _CHORD_STATIONS)
+    knots_u, along = _interpolate(grid)
+    knots_v, across = _interpolate(np.swapaxes(along, 0, 1))
+    control = np.swapaxes(across, 0, 1)
+    surface = NurbsSurface(_DEGREE, _DEGREE, knots_u, knots_v, control, np.ones(control.shape[:2]))
+    # twice as many sections and points: half of them lie midway between the interpolated ones
+    fine = _outline(propeller, _radii(propeller, 2 * _SPAN_STATIONS - 1), 2 * _CHORD_STATIONS - 1)
+    u, v = np.linspace(0.0, 1.0, fine.shape[0]), np.linspace(0.0, 1.0, fine.shape[1])
+    deviation = np.linalg.norm(surface.evaluate(u, v) - fine, axis=-1)
+    return BladeSurface(surface, float(np.max(deviation)))
+
+
+def _interpolate(values: Array) -> tuple[Array, Array]:
+    """Clamped cubic spline through ``values`` along axis 0 at equal parameters: knots, control points."""
+    spline = make_interp_spline(np.linspace(0.0, 1.0, values.shape[0]), values, k=_DEGREE, axis=0)
+    knots = np.array(spline.t, dtype=np.float64)
+    return knots, np.asarray(spline.c, dtype=np.float64)
+
+
+def hub_nurbs(propeller: Propeller) -> NurbsSurface:
+    """The hub from its forward face (open) to the tip of the boss cap, exactly round: u along the shaft, v round it."""
+    hub = hub_of(propeller)
+    quarter = np.sin(0.5 * np.pi * np.arange(_HUB_STATIONS) / (_HUB_STATIONS - 1))
+    cap = hub.cylinder_end + (hub.cap_x - hub.cylinder_end) * quarter
+    ahead = np.linspace(hub.face_x, hub.cylinder_start, 6)
+    x = np.concatenate([ahead, cap])
+    radius = hub.radius_at(x)
+    radius[-1] = 0.0
+    length = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(radius)))])
+    knots_u = np.concatenate([[0.0], length / length[-1], [1.0]])
+    # nine points of a square with weights 1 and sqrt(1/2) are a full circle (The NURBS Book, example 7.4)
+    square = np.array([[0, 1], [1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1], [0, 1]], dtype=np.float64)
+    corner = np.where(np.arange(9) % 2 == 1, np.sqrt(0.5), 1.0)
+    knots_v = np.array([0, 0, 0, 0.25, 0.25, 0.5, 0.5, 0.75, 0.75, 1, 1, 1])
+    control = np.zeros((x.size, 9, 3))
+    control[..., 0] = x[:, None]
+    control[..., 1:] = radius[:, None, None] * square
+    weights = np.broadcast_to(corner, control.shape[:2]).copy()
+    return NurbsSurface(1, 2, knots_u, knots_v, control * (0.5 * propeller.diameter), weights)
