@@ -7,6 +7,7 @@ import contextlib
 import importlib.util
 import multiprocessing
 import multiprocessing.forkserver
+import multiprocessing.resource_tracker
 import os
 import signal
 from collections.abc import Callable, Iterator
@@ -91,7 +92,9 @@ class LocalWorkers:
         if "forkserver" in multiprocessing.get_all_start_methods():
             method = "forkserver"
             multiprocessing.forkserver.set_forkserver_preload(["hpsop_core.runs.preload"])
-            with _one_thread_environment(), _interrupt_blocked():
+            # First, because its start unblocks the very signals that we block for the fork server's.
+            multiprocessing.resource_tracker.ensure_running()
+            with _one_thread_environment(), _signals_blocked():
                 multiprocessing.forkserver.ensure_running()
         else:
             method = "spawn"
@@ -100,7 +103,7 @@ class LocalWorkers:
             with _one_thread_environment():
                 probes = [self._pool.submit(warm_up_task, 0.02) for _ in range(self._count)]
             self._processes = {probe.result(timeout=_START_LIMIT) for probe in probes}
-        except (concurrent.futures.BrokenExecutor, concurrent.futures.TimeoutError) as error:
+        except (concurrent.futures.BrokenExecutor, concurrent.futures.TimeoutError, EOFError, OSError) as error:
             self.close()
             raise WorkersUnavailableError(
                 "worker processes do not start; a script that calls optimize() must do so below "
@@ -247,9 +250,10 @@ def _one_thread_environment() -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _interrupt_blocked() -> Iterator[None]:
-    # A process inherits the mask: Ctrl-C in the terminal shall not tear the fork server out of its imports.
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT})
+def _signals_blocked() -> Iterator[None]:
+    # A process inherits the mask: Ctrl-C in a terminal, or a service manager's SIGTERM to all, shall not tear the fork
+    # server away from under the run that is just being stopped in good order.
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
     try:
         yield
     finally:

@@ -21,7 +21,7 @@ from hpsop_core.optimization.two_level import TwoLevelSearch
 from hpsop_core.runs.batch import BatchEvaluator
 from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.events import RunEvent, RunSnapshot, State
-from hpsop_core.runs.executor import Workers
+from hpsop_core.runs.executor import Workers, WorkersUnavailableError
 from hpsop_core.runs.records import variables_text
 from hpsop_core.runs.schema import software_versions
 from hpsop_core.runs.store import RunStore, StoreUnwritableError
@@ -91,6 +91,10 @@ class RunDriver:
         except _StoppedError:
             state = "stopped"
         except HpsopError as error:
+            if self._control.stopped and isinstance(error, WorkersUnavailableError):
+                # Whoever stopped us (a service manager, say) ended the workers too.
+                state = "stopped"
+                return state
             reason = str(error)
             raise
         except BaseException as error:

@@ -145,6 +145,7 @@ def start_worker() -> None:
     """What a local worker process does first: obey its parent alone, and never outlive it."""
     # Ctrl-C in a terminal reaches every process of the group; the parent decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})  # blocked in the fork server, and so in its children
     _die_with_parent()
     os.nice(_NICENESS)  # the page and the desktop stay smooth while every core computes
     pin_threads()
