@@ -102,7 +102,7 @@ def hull_panels(hull: Hull, lengthwise: int, girthwise: int) -> HullPanels:
         points = hull.patch_points(name, u, v)
         quads.append(grid_quads(points))
         blocks.append((name, len(u) - 1, len(v) - 1))
-        if name in hull.parent.caps:
+        if (name, "first") in hull.parent.caps:
             quads.append(_cap_quads(points[0]))
             blocks.append((f"{name} end", 1, len(v) - 1))
     measured = hull.hydrostatics
