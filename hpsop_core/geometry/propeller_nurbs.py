@@ -31,7 +31,7 @@ class BladeSurface:
 
     Attributes:
         surface: u from root to tip, v from the trailing edge over the back to the leading edge and over the face back.
-        largest_deviation: from the sections' own points between the interpolated ones, m.
+        largest_deviation: normal distance from the sections' own points midway between the interpolated ones, m.
     """
 
     surface: NurbsSurface
@@ -64,7 +64,11 @@ def blade_nurbs(propeller: Propeller) -> BladeSurface:
     # twice as many sections and points: half of them lie midway between the interpolated ones
     fine = _outline(propeller, _radii(propeller, 2 * _SPAN_STATIONS - 1), 2 * _CHORD_STATIONS - 1)
     u, v = np.linspace(0.0, 1.0, fine.shape[0]), np.linspace(0.0, 1.0, fine.shape[1])
-    deviation = np.linalg.norm(surface.evaluate(u, v) - fine, axis=-1)
+    points, along_u, along_v = surface.derivatives(u, v)
+    normal = np.cross(along_u, along_v)
+    length = np.linalg.norm(normal, axis=-1)
+    # a point that slid along the surface is no error of the shape; at the very tip edge there is no normal
+    deviation = np.abs(np.sum((points - fine) * normal, axis=-1)) / np.where(length > 0.0, length, 1.0)
     return BladeSurface(surface, float(np.max(deviation)))
 
 

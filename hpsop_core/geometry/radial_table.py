@@ -108,7 +108,7 @@ class RadialTable:
         return PchipInterpolator(abscissa, columns, axis=0, extrapolate=True)
 
     def at(self, radius_ratio: Array) -> BladeSections:
-        """The sections at ``radius_ratio`` (any shape), continued smoothly to 0.9 of the hub's radius and held there."""
+        """The sections at ``radius_ratio`` (any shape), continued smoothly to 0.9 of the hub radius and held there."""
         radius = np.asarray(radius_ratio, dtype=np.float64)
         values = np.asarray(
             self._interpolant(np.sqrt(1.0 - np.clip(radius, 0.9 * self.hub_ratio, 1.0))), dtype=np.float64
