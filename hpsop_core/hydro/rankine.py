@@ -325,9 +325,8 @@ def _solve(body: HullPanels, numbers: tuple[float, ...], settings: RankineSettin
             elevation_range=(float(np.min(elevation)), float(np.max(elevation))),
             fields=shown,
         )
-        check_answer(
-            condition.froude_number, condition.wave_coefficient, condition.wave_coefficient_pressure, elevation
-        )
+        by_both = condition.wave_coefficient, condition.wave_coefficient_pressure
+        check_answer(number, *by_both, elevation, settings.columns_along_hull)
         conditions.append(condition)
     return RankineResult(
         conditions=tuple(conditions),

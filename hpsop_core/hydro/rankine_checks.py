@@ -117,7 +117,9 @@ def check_base_flow(strengths: Array, flow: Array, drag: float) -> None:
         raise SolverFailure("rankine", f"the double body has a drag coefficient of {drag:.2e}, which should be zero")
 
 
-def check_answer(froude_number: float, by_plane: float, by_pressure: float, elevation: Array) -> None:
+def check_answer(
+    froude_number: float, by_plane: float, by_pressure: float, elevation: Array, columns_along_hull: int
+) -> None:
     """Refuse a wave resistance that is none.
 
     Raises:
@@ -126,8 +128,11 @@ def check_answer(froude_number: float, by_plane: float, by_pressure: float, elev
     if not (np.isfinite(by_plane) and np.isfinite(by_pressure) and np.all(np.isfinite(elevation))):
         raise SolverFailure("rankine", f"the solution at Froude number {froude_number:g} is not finite")
     if by_plane <= 0.0:
+        cells = 2.0 * np.pi * froude_number**2 * columns_along_hull
         raise SolverFailure(
-            "rankine", f"wave coefficient {by_plane:.2e} at Froude number {froude_number:g} is not positive"
+            "rankine",
+            f"wave coefficient {by_plane:.2e} at Froude number {froude_number:g} is not positive; a transverse "
+            f"wave has {cells:.1f} cells of the surface grid: take finer settings or a higher speed",
         )
     if by_plane > LARGEST_WAVE_COEFFICIENT:
         raise SolverFailure(

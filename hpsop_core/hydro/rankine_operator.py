@@ -6,11 +6,11 @@ upwind-biased difference
     (-3 f_{i+2} + 30 f_{i+1} + 20 f_i - 60 f_{i-1} + 15 f_{i-2} - 2 f_{i-3})/(60 dx),
 
 whose symbol, with kappa = k dx, is i kappa (1 + O(kappa^6)) + 2/15 (1 - cos kappa)^3.  Dawson's is
-i kappa (1 + kappa^2/6 + ...) + 2/3 (1 - cos kappa)^3: his waves are too long and five times as damped.  A purely upstream
-formula cannot do better: one that never amplifies has a dispersion of at least kappa^2/12.  The damping that remains is
-positive at every wave number, which is what keeps waves from running ahead of the bow.  The last two columns, which lack
-neighbours downstream, take Dawson's formula.  On the stretched grid both act in index space and are divided by the same
-difference of x.
+i kappa (1 + kappa^2/6 + ...) + 2/3 (1 - cos kappa)^3: his waves are too long and five times as damped.  A purely
+upstream formula cannot do much better: one that never amplifies has a dispersion of at least kappa^2/12.  The damping
+that remains is positive at every wave number, which is what keeps waves from running ahead of the bow.  The last two
+columns, which lack neighbours downstream, take Dawson's formula.  On the stretched grid both act in index space and are
+divided by the same difference of x.
 """
 
 from __future__ import annotations
