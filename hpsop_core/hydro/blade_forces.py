@@ -10,7 +10,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hpsop_core.geometry.propeller import Propeller
-from hpsop_core.geometry.propeller_sections import IDEAL_LIFT_PER_CAMBER
+from hpsop_core.geometry.propeller_sections import IDEAL_ANGLE_PER_CAMBER
 from hpsop_core.hydro.blade_grid import BladeGrid
 from hpsop_core.hydro.helical_vortices import wrench_velocities
 from hpsop_core.hydro.section_drag import SectionDrag
@@ -25,7 +25,8 @@ class StripData:
 
     Attributes:
         radius: r/R of the control points; width: of the strips.
-        chord: c/R; thickness_ratio: t/c; camber_ratio: f/c.
+        chord: c/R; thickness_ratio: t/c.
+        pitch_angle: geometric, and ideal_angle: of the mean line at shock-free entry, radians.
         edges: (m + 1,) r/R.
         blade_count: Z.
         diameter: D in m, for the Reynolds or roughness number of the sections.
@@ -35,7 +36,8 @@ class StripData:
     width: Array
     chord: Array
     thickness_ratio: Array
-    camber_ratio: Array
+    pitch_angle: Array
+    ideal_angle: Array
     edges: Array
     blade_count: int
     diameter: float
@@ -48,7 +50,8 @@ class StripData:
             np.diff(grid.radius_edges),
             2.0 * sections.chord_ratio,
             sections.thickness_ratio,
-            sections.camber_ratio,
+            sections.pitch_angle,
+            IDEAL_ANGLE_PER_CAMBER * sections.camber_ratio,
             grid.radius_edges,
             propeller.blade_count,
             propeller.diameter,
@@ -95,18 +98,18 @@ def circulation_forces(strips: StripData, circulation: Array, flow: LocalFlow) -
 
 
 def drag_forces(
-    strips: StripData, circulation: Array, flow: LocalFlow, advance: float, drag: SectionDrag
+    strips: StripData, flow: LocalFlow, advance: float, drag: SectionDrag
 ) -> tuple[float, float]:
     """What section drag adds to (KT, KQ)."""
     if not drag.viscous:
         return 0.0, 0.0
     speed = flow.speed
-    lift = 2.0 * circulation / (speed * strips.chord)
+    excess = 2.0 * np.pi * (strips.pitch_angle - np.arctan2(flow.axial, flow.tangential) - strips.ideal_angle)
     ideal = drag.ideal_coefficient(
         strips.diameter, 0.5 * strips.chord, strips.thickness_ratio,
         np.sqrt((0.5 * advance) ** 2 + (np.pi * strips.radius) ** 2),
     )
-    coefficient = drag.coefficient(ideal, lift, strips.camber_ratio * IDEAL_LIFT_PER_CAMBER)
+    coefficient = drag.coefficient(ideal, excess)
     force = 0.5 * strips.blade_count * speed * strips.chord * coefficient * strips.width
     thrust = -float(np.sum(force * flow.axial))
     torque = float(np.sum(force * flow.tangential * strips.radius))

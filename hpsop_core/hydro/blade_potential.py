@@ -148,16 +148,6 @@ class SurfaceGradient:
         along_j = np.gradient(potential, axis=1, edge_order=2)
         return self.dual_i[..., None] * along_i[:, :, None, :] + self.dual_j[..., None] * along_j[:, :, None, :]
 
-    def at_trailing_edge(self, potential: Array) -> tuple[Array, Array]:
-        """Gradients (m, 3, k) at the first and the last row, of k potentials (n, m, k)."""
-        first = -1.5 * potential[0] + 2.0 * potential[1] - 0.5 * potential[2]
-        last = 1.5 * potential[-1] - 2.0 * potential[-2] + 0.5 * potential[-3]
-        across_first = np.gradient(potential[0], axis=0, edge_order=2)
-        across_last = np.gradient(potential[-1], axis=0, edge_order=2)
-        lower = self.dual_i[0][:, :, None] * first[:, None, :] + self.dual_j[0][:, :, None] * across_first[:, None, :]
-        upper = self.dual_i[-1][:, :, None] * last[:, None, :] + self.dual_j[-1][:, :, None] * across_last[:, None, :]
-        return lower, upper
-
 
 def tangential(vector: Array, normal: Array) -> Array:
     """The part of vectors (..., 3, k) along surfaces with unit normals (..., 3)."""
@@ -166,104 +156,165 @@ def tangential(vector: Array, normal: Array) -> Array:
 
 
 @dataclass(frozen=True)
-class KuttaProblem:
-    """Equal pressure on both sides of the trailing edge, for states that superpose.
-
-    Velocities at the last collocation points of strip j, lower and upper side, are onset part times the weights of the
-    onset basis plus jump part times dphi.
+class _TrailingStation:
+    """Total velocity on one side, half way between two chordwise neighbours, for states that superpose.
 
     Attributes:
-        onset_lower, onset_upper: (m, 3, b) total tangential velocity of unit onset flows, wake without jump.
-        free_lower, free_upper: (m, 3, b) the onset flow itself.
-        gradient: of the lifting surface.
-        surface: the lifting surface.
+        free: (m, 3, b) onset flow; tangent: (m, 3, b) velocity of unit onset flows without wake.
+        along, across: (m, 3) dual vectors of the index along the chord and across the span.
+        rows: the two rows of collocation points.
     """
 
-    onset_lower: Array
-    onset_upper: Array
-    free_lower: Array
-    free_upper: Array
-    gradient: SurfaceGradient
-    surface: StripSurface
+    free: Array
+    tangent: Array
+    along: Array
+    across: Array
+    rows: tuple[int, int]
 
     @classmethod
-    def of(cls, body: BodyPotential, gradient: SurfaceGradient) -> KuttaProblem:
+    def between(cls, surface: StripSurface, onset: Array, potential: Array, rows: tuple[int, int]) -> _TrailingStation:
+        first, second = rows
+        points = surface.collocation
+        a = points[second] - points[first]
+        b = np.gradient(0.5 * (points[second] + points[first]), axis=0, edge_order=2)
+        aa, ab, bb = (a * a).sum(-1), (a * b).sum(-1), (b * b).sum(-1)
+        det = np.maximum(aa * bb - ab * ab, 1e-300)[:, None]
+        along = (bb[:, None] * a - ab[:, None] * b) / det
+        across = (aa[:, None] * b - ab[:, None] * a) / det
+        normal = np.cross(a, b)
+        normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
+        free = 0.5 * (onset[first] + onset[second])
+        bare = cls(free, tangential(free, normal), along, across, rows)
+        return cls(free, bare.tangent + bare.gradient(potential), along, across, rows)
+
+    def gradient(self, potential: Array) -> Array:
+        """(m, 3, k) surface gradient of potentials (n, m, k)."""
+        first, second = potential[self.rows[0]], potential[self.rows[1]]
+        across = np.gradient(0.5 * (first + second), axis=0, edge_order=2)
+        return self.along[:, :, None] * (second - first)[:, None, :] + self.across[:, :, None] * across[:, None, :]
+
+
+@dataclass(frozen=True)
+class KuttaProblem:
+    """Equal pressure on both sides of the trailing edge.
+
+    The pressure difference of the two sides is taken at half stations, between the first and second and between the
+    second and third row of collocation points (there a central difference gives the velocity), and extrapolated to the
+    edge linearly in the row index: 2 dp(1/2) - dp(3/2) = 0. On 24 x 10 panels the forces are then within 0.5 % of
+    those on 80 x 24; equal pressures at the last collocation points would leave 3 to 5 %.
+
+    Strips next to the tip and to the hub take Morino's linear condition (the jump is the difference of the last
+    potentials): round the tip's edge the flow crosses from one side to the other, and beside the hub the edge of the
+    wake crosses hub panels; on fine grids no jump makes the pressures equal there.
+
+    Attributes:
+        surface: the lifting surface.
+        stations: ((lower, upper), (lower, upper)) from the trailing edge.
+        onset_difference: (m, b) upper minus lower potential at the last collocation points.
+        linear_strips: strips that take Morino's condition.
+    """
+
+    surface: StripSurface
+    stations: tuple[tuple[_TrailingStation, _TrailingStation], ...]
+    onset_difference: Array
+    linear_strips: tuple[int, ...]
+
+    @classmethod
+    def of(cls, body: BodyPotential, linear_strips: tuple[int, ...]) -> KuttaProblem:
         rows, strips = body.surface.shape
         count = rows * strips
-        basis = body.onset.shape[2]
-        onset = body.onset[:count].reshape(rows, strips, 3, basis)
-        lower, upper = gradient.at_trailing_edge(body.onset_potential[:count].reshape(rows, strips, basis))
-        normal = body.surface.normal
-        return cls(
-            tangential(onset[0], normal[0]) + lower,
-            tangential(onset[-1], normal[-1]) + upper,
-            onset[0],
-            onset[-1],
-            gradient,
-            body.surface,
+        onset = body.onset[:count].reshape(rows, strips, 3, -1)
+        potential = body.onset_potential[:count].reshape(rows, strips, -1)
+        stations = tuple(
+            (
+                _TrailingStation.between(body.surface, onset, potential, (k, k + 1)),
+                _TrailingStation.between(body.surface, onset, potential, (rows - 1 - k, rows - 2 - k)),
+            )
+            for k in range(2)
         )
+        return cls(body.surface, stations, potential[-1] - potential[0], linear_strips)
 
-    def jump_velocities(self, wake_potential: Array) -> tuple[Array, Array]:
-        """(m, 3, m) velocities at the trailing edge, lower and upper, of unit jumps."""
+    def wake_terms(self, wake_potential: Array) -> Array:
+        """What the condition needs of unit jumps: (5, m, 3, m), linear in the wake potentials (n, m).
+
+        Velocities at the stations (lower, upper; first, second), then in place [4, :, 0] the difference of the
+        potentials of the last collocation points.
+        """
         rows, strips = self.surface.shape
-        return self.gradient.at_trailing_edge(wake_potential[: rows * strips].reshape(rows, strips, -1))
+        potential = wake_potential[: rows * strips].reshape(rows, strips, strips)
+        terms = np.zeros((5, strips, 3, strips))
+        for k, pair in enumerate(self.stations):
+            for side, station in enumerate(pair):
+                terms[2 * k + side] = station.gradient(potential)
+        terms[4, :, 0] = potential[-1] - potential[0]
+        return terms
 
-    def solve(
-        self, weights: Array, jump_lower: Array, jump_upper: Array, start: Array, label: str
-    ) -> Array:
-        """The jumps (m,) that make the pressures equal.
+    def _linear(self, weights: Array, terms: Array) -> tuple[Array, Array]:
+        return np.eye(self.surface.shape[1]) - terms[4, :, 0], self.onset_difference @ weights
+
+    def first_guess(self, weights: Array, terms: Array) -> Array:
+        """(m,) jumps by Morino's linear condition on every strip."""
+        matrix, right = self._linear(weights, terms)
+        result: Array = np.linalg.solve(matrix, right)
+        return result
+
+    def solve(self, weights: Array, terms: Array, start: Array, label: str) -> Array:
+        """The jumps (m,), by Newton's method.
 
         Args:
             weights: (b,) of the onset basis.
-            jump_lower, jump_upper: from ``jump_velocities``.
+            terms: from ``wake_terms``.
             start: (m,) first guess.
             label: names the condition in a failure.
 
         Raises:
             SolverFailure: Newton's method does not converge.
         """
-        base_lower, base_upper = self.onset_lower @ weights, self.onset_upper @ weights
-        head = np.sum((self.free_upper @ weights) ** 2, axis=1) - np.sum((self.free_lower @ weights) ** 2, axis=1)
-        scale = float(np.max(np.sum((self.free_upper @ weights) ** 2, axis=1)))
-        jump = start.copy()
+        linear_matrix, linear_right = self._linear(weights, terms)
+        linear = list(self.linear_strips)
+        bases, heads = [], []
+        for lower, upper in self.stations:
+            bases.append((lower.tangent @ weights, upper.tangent @ weights))
+            heads.append(np.sum((upper.free @ weights) ** 2 - (lower.free @ weights) ** 2, axis=1))
+        scale = float(np.max(np.sum((self.stations[0][1].free @ weights) ** 2, axis=1)))
+        length = float(np.sqrt(scale))
 
-        def residual(jump: Array) -> tuple[Array, Array, Array]:
-            lower, upper = base_lower + jump_lower @ jump, base_upper + jump_upper @ jump
-            value = head - np.sum(upper**2, axis=1) + np.sum(lower**2, axis=1)
-            return value / scale, lower, upper
+        def residual(jump: Array) -> tuple[Array, Array]:
+            value = np.zeros(jump.size)
+            jacobian = np.zeros((jump.size, jump.size))
+            for k, factor in enumerate((2.0, -1.0)):
+                lower = bases[k][0] + terms[2 * k] @ jump
+                upper = bases[k][1] + terms[2 * k + 1] @ jump
+                value += factor / scale * (heads[k] + np.sum(lower**2 - upper**2, axis=1))
+                change = np.einsum("ma,mak->mk", lower, terms[2 * k]) - np.einsum("ma,mak->mk", upper, terms[2 * k + 1])
+                jacobian += 2.0 * factor / scale * change
+            value[linear] = (linear_matrix[linear] @ jump - linear_right[linear]) / length
+            jacobian[linear] = linear_matrix[linear] / length
+            return value, jacobian
 
-        value, lower, upper = residual(jump)
+        jump = start
+        value, jacobian = residual(jump)
         for _ in range(_KUTTA_ITERATIONS):
-            jacobian = 2.0 * (
-                np.einsum("ma,mak->mk", lower, jump_lower) - np.einsum("ma,mak->mk", upper, jump_upper)
-            ) / scale
+            norm = float(np.abs(value).max())
             try:
                 step = np.linalg.solve(jacobian, -value)
             except np.linalg.LinAlgError:
                 break
-            length, norm = 1.0, float(np.abs(value).max())
+            share = 1.0
             for _ in range(8):
-                trial = residual(jump + length * step)
-                if np.abs(trial[0]).max() < norm or norm < 1e-11:
+                trial = residual(jump + share * step)
+                if float(np.abs(trial[0]).max()) < norm or norm < 1e-10:
                     break
-                length *= 0.5
-            jump = jump + length * step
-            value, lower, upper = trial
-            if float(np.abs(length * step).max()) <= 1e-11 * (1.0 + float(np.abs(jump).max())):
+                share *= 0.5
+            jump = jump + share * step
+            value, jacobian = trial
+            if float(np.abs(share * step).max()) <= 1e-11 * (1.0 + float(np.abs(jump).max())):
                 break
-        if not np.all(np.isfinite(jump)) or float(np.abs(value).max()) > 1e-7:
+        worst = float(np.abs(value).max())
+        if not (np.all(np.isfinite(jump)) and worst < 1e-7):
             raise SolverFailure(
                 STAGE,
-                f"the pressure Kutta condition does not converge at {label} "
-                f"(pressure difference {float(np.abs(value).max()):.1e} of the dynamic pressure)",
+                f"the pressure Kutta condition does not converge at {label} (pressure difference {worst:.1e} of the "
+                "dynamic pressure)",
             )
         return jump
-
-    def linear_start(self, weights: Array, onset_potential: Array, wake_potential: Array) -> Array:
-        """Morino's condition: the jump is the difference of the potentials of the last panels (first guess)."""
-        rows, strips = self.surface.shape
-        last = slice((rows - 1) * strips, rows * strips)
-        onset = (onset_potential[last] - onset_potential[:strips]) @ weights
-        matrix = np.eye(strips) - (wake_potential[last] - wake_potential[:strips])
-        result: Array = np.linalg.solve(matrix, onset)
-        return result

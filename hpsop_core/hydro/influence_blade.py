@@ -91,7 +91,10 @@ def panel_set(corners: Array) -> PanelSet:
     local[:, :, 1] -= cy[:, None]
     moments = np.stack([projected, ixx, iyy, ixy, size, *_twist_moments(local)], axis=1)
     return PanelSet(
-        corners, np.ascontiguousarray(centre), np.ascontiguousarray(axes), np.ascontiguousarray(local),
+        corners,
+        np.ascontiguousarray(centre),
+        np.ascontiguousarray(axes),
+        np.ascontiguousarray(local),
         np.ascontiguousarray(moments),
     )
 
@@ -208,6 +211,17 @@ def _solid_angle(local: Any, j: int, x: float, y: float, z: float) -> float:
 
 
 @njit(cache=True)
+def _own_solid_angle(local: Any, moments: Any, j: int, x: float, y: float) -> float:
+    """Principal value of the dipole influence of bilinear panel j at its own point (x, y).
+
+    It is half way between the two sides of the panel. The point is lifted a little towards the outside: on the
+    diagonal that the two triangles share, their half angles are undefined.
+    """
+    lift = 1e-6 * moments[j, 0] / max(moments[j, 4], 1e-300)
+    return float(_solid_angle(local, j, x, y, _bilinear_height(local, j, x, y) + lift) - _TWO_PI)
+
+
+@njit(cache=True)
 def _source_potential(local: Any, j: int, x: float, y: float, z: float) -> float:
     """Source influence of panel j, taken flat in its mean plane, at the local point (x, y, z)."""
     total = 0.0
@@ -256,18 +270,24 @@ def _body_influence(
                     dipole[i, j] += _dipole_expansion(moments, j, x, y, z, r2)
                     source[i, j] += _source_expansion(moments, j, x, y, r2)
                 else:
-                    omega = _solid_angle(local, j, x, y, z)
-                    source[i, j] += _source_potential(local, j, x, y, z)
                     if k == 0 and own[i] == j:
-                        # Principal value: the point lies on the panel, half way between its two sides.
-                        omega -= _TWO_PI if omega > 0.0 else -_TWO_PI
-                    dipole[i, j] += omega
+                        dipole[i, j] += _own_solid_angle(local, moments, j, x, y)
+                    else:
+                        dipole[i, j] += _solid_angle(local, j, x, y, z)
+                    source[i, j] += _source_potential(local, j, x, y, z)
     return dipole, source
 
 
 @njit(cache=True)
 def _strip_influence(
-    points: Any, blade_count: int, strip: Any, strip_count: int, centre: Any, axes: Any, local: Any, moments: Any,
+    points: Any,
+    blade_count: int,
+    strip: Any,
+    strip_count: int,
+    centre: Any,
+    axes: Any,
+    local: Any,
+    moments: Any,
     far: float,
 ) -> Any:
     n_points = points.shape[0]
@@ -315,8 +335,14 @@ def body_influence(
     """
     own = np.full(points.shape[0], -1, dtype=np.int64) if own_panel is None else own_panel.astype(np.int64)
     dipole, source = _body_influence(
-        np.ascontiguousarray(points, dtype=np.float64), own, blade_count, panels.centre, panels.axes, panels.local,
-        panels.moments, far,
+        np.ascontiguousarray(points, dtype=np.float64),
+        own,
+        blade_count,
+        panels.centre,
+        panels.axes,
+        panels.local,
+        panels.moments,
+        far,
     )
     return dipole, source
 
@@ -329,7 +355,14 @@ def strip_influence(
     `strip` (n,) names the strip of each wake panel; all panels of a strip carry the same dipole strength.
     """
     result: Array = _strip_influence(
-        np.ascontiguousarray(points, dtype=np.float64), blade_count, strip.astype(np.int64), strip_count,
-        panels.centre, panels.axes, panels.local, panels.moments, far,
+        np.ascontiguousarray(points, dtype=np.float64),
+        blade_count,
+        strip.astype(np.int64),
+        strip_count,
+        panels.centre,
+        panels.axes,
+        panels.local,
+        panels.moments,
+        far,
     )
     return result
