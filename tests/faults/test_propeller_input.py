@@ -1,0 +1,128 @@
+"""Bad radial tables and bad propellers: one line that names the place and the remedy."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hpsop_core.assets import read_asset_text
+from hpsop_core.errors import InputError
+from hpsop_core.geometry.propeller import load_propeller, propeller_family, radial_table_from_csv
+from hpsop_core.geometry.radial_table import RadialTable
+from hpsop_core.hydro.section_drag import SectionDrag
+
+HEADER = "r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c"
+ROWS = [
+    "0.2,0.32,1.105,0,0,0.2,0.014",
+    "0.4,0.40,1.098,0,0,0.118,0.023",
+    "0.6,0.46,1.088,0,0,0.07,0.021",
+    "0.8,0.43,1.081,0,0,0.042,0.02",
+    "0.95,0.28,1.077,0,0,0.032,0.016",
+    "1.0,0.0,1.075,0,0,0.032,0.012",
+]
+
+
+def write(folder: Path, lines: list[str]) -> Path:
+    file = folder / "blade.csv"
+    file.write_text("\n".join(lines) + "\n", encoding="utf-8")
+    return file
+
+
+def changed(row: int, text: str) -> list[str]:
+    return ["# a blade", HEADER, *[text if i == row else line for i, line in enumerate(ROWS)]]
+
+
+BAD = {
+    "thickness in percent": (changed(2, "0.6,0.46,1.088,0,0,7.0,0.021"), ("line 5", "t_c 7", "percent")),
+    "chord in percent": (changed(2, "0.6,46,1.088,0,0,0.07,0.021"), ("line 5", "c_D 46", "fractions of the diameter")),
+    "camber in percent": (changed(2, "0.6,0.46,1.088,0,0,0.07,2.1"), ("line 5", "f_c 2.1", "percent")),
+    "pitch in millimetres": (changed(1, "0.4,0.40,330,0,0,0.118,0.023"), ("line 4", "P_D 330")),
+    "negative chord": (changed(3, "0.8,-0.43,1.081,0,0,0.042,0.02"), ("line 6", "c_D -0.43")),
+    "no chord inside": (changed(3, "0.8,0,1.081,0,0,0.042,0.02"), ("line 6", "c_D is zero", "only the tip")),
+    "unsorted": (changed(3, "0.5,0.43,1.081,0,0,0.042,0.02"), ("line 6", "does not ascend", "sort")),
+    "repeated radius": (changed(3, "0.6,0.43,1.081,0,0,0.042,0.02"), ("line 6", "does not ascend")),
+    "nan": (changed(4, "0.95,nan,1.077,0,0,0.032,0.016"), ("line 7", "c_D is nan", "finite")),
+    "inf": (changed(4, "0.95,0.28,inf,0,0,0.032,0.016"), ("line 7", "P_D is inf", "finite")),
+    "a word": (changed(4, "0.95,wide,1.077,0,0,0.032,0.016"), ("line 7", "c_D 'wide'", "not a number")),
+    "decimal comma": (changed(4, "0,95,0.28,1.077,0,0,0.032,0.016"), ("line 7", "8 values for 7 columns")),
+    "radius in percent": (changed(4, "95,0.28,1.077,0,0,0.032,0.016"), ("line 7", "r_R 95", "0 to 1")),
+    "short row": (changed(4, "0.95,0.28,1.077,0,0"), ("line 7", "5 values for 7 columns")),
+    "no tip": (["# a blade", HEADER, *ROWS[:-1]], ("line 7", "r_R = 1")),
+    "hub too small": (changed(0, "0.0,0.32,1.105,0,0,0.2,0.014"), ("line 3", "hub ratio")),
+    "too few rows": ([HEADER, *ROWS[2:]], ("4 rows", "at least 5")),
+    "missing column": (["r_R,c_D,P_D,skew_deg,rake_D,t_c", *ROWS], ("line 1", "f_c is missing")),
+    "no header": (ROWS, ("line 1", "is missing", HEADER)),
+    "repeated column": ([HEADER + ",r_R", *ROWS], ("r_R stands there twice",)),
+    "empty": (["# nothing"], ("holds no rows",)),
+}
+
+
+@pytest.mark.parametrize("name", sorted(BAD))
+def test_bad_table_names_line_and_remedy(name: str, tmp_path: Path) -> None:
+    lines, words = BAD[name]
+    file = write(tmp_path, lines)
+    with pytest.raises(InputError) as error:
+        radial_table_from_csv(file, 3)
+    message = str(error.value)
+    assert "\n" not in message and str(file) in message
+    for word in words:
+        assert word in message, message
+
+
+def test_missing_and_binary_files(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="cannot be read"):
+        radial_table_from_csv(tmp_path / "none.csv")
+    with pytest.raises(InputError, match="cannot be read"):
+        radial_table_from_csv(tmp_path)
+    binary = tmp_path / "blade.csv"
+    binary.write_bytes(bytes(range(128, 256)))
+    with pytest.raises(InputError, match="not a text file"):
+        radial_table_from_csv(binary)
+
+
+def test_good_tables_are_read(tmp_path: Path) -> None:
+    """Comments, blank lines, other order of columns, a byte-order mark, a tip with and without chord."""
+    table = radial_table_from_csv(write(tmp_path, ["# a blade", "", HEADER, "# hub", *ROWS]), 4)
+    assert table.blade_count == 4 and table.name == "blade" and table.hub_ratio == 0.2
+    finite = radial_table_from_csv(write(tmp_path, [HEADER, *ROWS[:-1], "1.0,0.1,1.075,0,0,0.032,0.012"]))
+    assert finite.chord_ratio[-1] == 0.1
+    order = [6, 5, 4, 3, 2, 1, 0]
+    lines = [",".join(line.split(",")[i] for i in order) for line in (HEADER, *ROWS)]
+    other = tmp_path / "other.csv"
+    other.write_bytes(b"\xef\xbb\xbf" + "\r\n".join(lines).encode())
+    assert np.array_equal(radial_table_from_csv(other).chord_ratio, table.chord_ratio)
+    shipped = tmp_path / "p4119.csv"
+    shipped.write_text(read_asset_text("propellers", "p4119.csv"), encoding="utf-8")
+    assert np.array_equal(radial_table_from_csv(shipped).thickness_ratio, load_propeller().thickness_ratio)
+
+
+@pytest.mark.parametrize(
+    ("diameter", "blades", "pitch", "area", "word"),
+    [
+        (-9.0, 3, 1.0, None, "diameter"),
+        (float("nan"), 3, 1.0, None, "diameter"),
+        (9.0, 3.5, 1.0, None, "blade_count"),
+        (9.0, 1, 1.0, None, "blade_count"),
+        (9.0, float("nan"), 1.0, None, "blade_count"),
+        (9.0, 3, float("inf"), None, "pitch_ratio"),
+        (9.0, 3, 10.0, None, "pitch_ratio"),
+        (9.0, 3, 1.0, 60.0, "expanded_area_ratio"),
+    ],
+)
+def test_bad_family_members(diameter: float, blades: float, pitch: float, area: float | None, word: str) -> None:
+    with pytest.raises(InputError, match=word):
+        propeller_family(load_propeller(), diameter, blades, pitch, area)  # type: ignore[arg-type]
+
+
+def test_other_bad_values() -> None:
+    with pytest.raises(InputError, match="not shipped"):
+        load_propeller("p9999")
+    with pytest.raises(InputError, match="viscosity"):
+        SectionDrag.model_scale(10.0, 0.0)
+    with pytest.raises(InputError, match="roughness"):
+        SectionDrag.full_scale(float("nan"))
+    five = np.linspace(0.2, 1.0, 5)
+    with pytest.raises(InputError, match="chord_ratio"):
+        RadialTable("x", five, five[:4], five, five, five, five, five)
