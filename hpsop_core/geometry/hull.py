@@ -20,7 +20,7 @@ from hpsop_core.geometry.hydrostatics import (
     integrate_parent,
     sectional_areas,
 )
-from hpsop_core.geometry.nurbs import NurbsSurface, basis_matrix
+from hpsop_core.geometry.nurbs import NurbsSurface, basis_matrix, rising_spline_inverse
 from hpsop_core.geometry.offset_table import OffsetTable, tabulate
 from hpsop_core.typing_aliases import Array, IntArray
 
@@ -36,6 +36,51 @@ HEIGHT_FRACTIONS = np.concatenate(
 # Refitted patches leave the exact shift by at most this part of the length (4 mm of 355 m).
 EXCHANGE_DEVIATION = 1e-5
 _CACHE_LIMIT = 256
+
+
+@dataclass(frozen=True)
+class PatchDeviation:
+    """How far the given points lie from one fitted patch, m; ``net`` is the size of its control net."""
+
+    patch: str
+    net: tuple[int, int]
+    points: int
+    rms_m: float
+    p99_m: float
+    max_m: float
+    max_at_x_m: float
+    max_at_z_m: float
+
+
+@dataclass(frozen=True)
+class FitReport:
+    """What fitting a surface to given points has changed; ``str`` prints it for people.
+
+    Attributes:
+        source: the file.
+        patches: one entry a patch.
+        table_volume: displaced volume of the bare points by the trapezoidal rule, m3.
+        fitted_volume: displaced volume of the surface, m3.
+    """
+
+    source: str
+    patches: tuple[PatchDeviation, ...]
+    table_volume: float
+    fitted_volume: float
+
+    def __str__(self) -> str:
+        lines = [f"{self.source}: deviation of the fitted surface from the given points"]
+        for p in self.patches:
+            lines.append(
+                f"  {p.patch:<11s} net {p.net[0]:3d} x {p.net[1]:<3d} rms {1e3 * p.rms_m:8.2f} mm  "
+                f"99 % {1e3 * p.p99_m:8.2f} mm  max {1e3 * p.max_m:8.2f} mm at x {p.max_at_x_m:.3f} m, "
+                f"z {p.max_at_z_m:.3f} m"
+            )
+        change = 100.0 * (self.fitted_volume / self.table_volume - 1.0)
+        lines.append(
+            f"  displaced volume {self.fitted_volume:.6g} m3, {change:+.2f} % against the trapezoidal rule on the table"
+        )
+        return "\n".join(lines)
 
 
 @dataclass(frozen=True, eq=False)
@@ -56,6 +101,7 @@ class ParentHull:
         girth: patch -> (other, start, end): its v in [0, 1] is the other's v in [start, end] where they meet.
         along: patch -> other patch with the same u (a topsides patch and the patch below it).
         source: where the shape comes from.
+        fit_report: how well the surface meets the points of a user's own hull.
     """
 
     name: str
@@ -72,6 +118,7 @@ class ParentHull:
     girth: Mapping[str, tuple[str, float, float]] = field(default_factory=dict)
     along: Mapping[str, str] = field(default_factory=dict)
     source: str = ""
+    fit_report: FitReport | None = None
     _points: dict[tuple[str, bytes, bytes], Array] = field(default_factory=dict, repr=False)
 
     def surface(self, name: str) -> NurbsSurface:
@@ -100,16 +147,9 @@ class ParentHull:
     def parameter(self, name: str, x: Array) -> Array:
         """u of a patch at stations x of the parent's frame (x is monotone in u), clipped to the patch."""
         surface = self.surface(name)
-        target = np.asarray(x, dtype=np.float64)
-        low, high = np.zeros_like(target), np.ones_like(target)
-        control = surface.control_points[:, 0, 0]
-        for _ in range(50):
-            middle = 0.5 * (low + high)
-            above = basis_matrix(surface.knots_u, surface.degree_u, middle.ravel()) @ control > target.ravel()
-            above = above.reshape(target.shape)
-            high = np.where(above, middle, high)
-            low = np.where(above, low, middle)
-        return np.asarray(0.5 * (low + high))
+        return rising_spline_inverse(
+            surface.knots_u, surface.degree_u, surface.control_points[:, 0, 0], np.asarray(x, dtype=np.float64)
+        )
 
     def extent(self, name: str) -> tuple[float, float]:
         """First and last x of a patch in the parent's frame."""

@@ -9,12 +9,13 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import TypedDict
 
 import numpy as np
-from scipy import sparse
+from scipy import linalg, sparse
 from scipy.interpolate import BSpline, CubicSpline, PchipInterpolator, make_interp_spline
 
-from hpsop_core.geometry.nurbs import NurbsSurface, basis_matrix, clamped_knots
+from hpsop_core.geometry.nurbs import NurbsSurface, basis_matrix, clamped_knots, rising_spline_inverse
 from hpsop_core.typing_aliases import Array
 
 DEGREE = 3
@@ -47,22 +48,17 @@ class StationMap:
         fine = spline(np.linspace(0.0, 1.0, 40 * len(stations)))
         if np.any(np.diff(fine) <= 0.0):
             raise ValueError(f"station map is not rising near x = {fine[int(np.argmin(np.diff(fine)))]:.2f} m")
-        return StationMap(np.asarray(spline.t), np.asarray(spline.c))
+        control = np.array(spline.c)
+        control[0], control[-1] = stations[0], stations[-1]
+        return StationMap(np.asarray(spline.t), control)
 
     def x(self, u: Array) -> Array:
         """x in metres at parameters u."""
         return np.asarray(BSpline(self.knots, self.control_x, DEGREE)(u))
 
     def u(self, x: Array) -> Array:
-        """The inverse of `x`, by a table and bisection (dx/du may vanish at the ends)."""
-        target = np.asarray(x, dtype=np.float64)
-        low, high = np.zeros_like(target), np.ones_like(target)
-        for _ in range(60):
-            middle = 0.5 * (low + high)
-            above = self.x(middle) > target
-            high = np.where(above, middle, high)
-            low = np.where(above, low, middle)
-        return np.asarray(0.5 * (low + high))
+        """The inverse of `x`."""
+        return rising_spline_inverse(self.knots, DEGREE, self.control_x, np.asarray(x, dtype=np.float64))
 
 
 @dataclass(frozen=True)
@@ -101,6 +97,17 @@ def tidy_section(x: float, points: Array, least_step: float = 1e-3) -> Section:
     return Section(x, np.array(kept))
 
 
+class DeviationSummary(TypedDict):
+    """Deviation of given points from a patch, m, with the place of the largest."""
+
+    points: int
+    rms_m: float
+    p99_m: float
+    max_m: float
+    max_at_x_m: float
+    max_at_z_m: float
+
+
 @dataclass(frozen=True)
 class PatchFit:
     """A fitted patch and how far the given points lie from it.
@@ -115,11 +122,11 @@ class PatchFit:
     deviation: Array
     where: Array
 
-    def summary(self) -> dict[str, float]:
+    def summary(self) -> DeviationSummary:
         """Root mean square, 99th percentile and maximum deviation in metres with the place of the maximum."""
         worst = int(np.argmax(self.deviation))
         return {
-            "points": float(len(self.deviation)),
+            "points": len(self.deviation),
             "rms_m": float(np.sqrt(np.mean(self.deviation**2))),
             "p99_m": float(np.percentile(self.deviation, 99.0)),
             "max_m": float(self.deviation[worst]),
@@ -246,7 +253,7 @@ def _solve(design: sparse.csr_matrix, target: Array, rough: sparse.csr_matrix, f
     normal = (design.T @ design + rough.T @ rough).tocsr()
     right = design.T @ target - normal @ values
     free = np.flatnonzero(~known)
-    values[free] = np.linalg.solve(normal[free][:, free].toarray(), right[free])
+    values[free] = linalg.solve(normal[free][:, free].toarray(), right[free], assume_a="pos")
     return np.asarray(values.reshape(fixed.shape))
 
 

@@ -25,8 +25,8 @@ _COUNTS: dict[str, tuple[int, int, int, int]] = {
     "view": (112, 24, 36, 22),
     "export": (280, 60, 96, 32),
 }
-# m in the parent: neighbours agree to the rounding of the stored control points; the centreplane is met exactly.
-_MERGE, _CENTREPLANE = 2e-5, 1e-7
+# Parts of the length: neighbours agree to the rounding of the stored control points; the centreplane is met exactly.
+_MERGE, _CENTREPLANE = 6e-8, 3e-10
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,7 +106,7 @@ def _pieces(parent: ParentHull, resolution: Resolution) -> list[_Piece]:
     points: dict[str, Array] = {}
     for name, (u, v) in patch_grids(parent, resolution).items():
         grid = parent.surface(name).evaluate(u, v)
-        grid[..., 1] = np.where(np.abs(grid[..., 1]) < _CENTREPLANE, 0.0, np.maximum(grid[..., 1], 0.0))
+        grid[..., 1] = np.where(np.abs(grid[..., 1]) < _CENTREPLANE * parent.length, 0.0, np.maximum(grid[..., 1], 0.0))
         points[name] = grid
         # u forward, v up on the port side: r_u x r_v points to port is (x) x (z) = -y: turned round.
         pieces.append(_Piece(grid, False, name in parent.underwater, False))
@@ -127,7 +127,7 @@ def _lid(parent: ParentHull, resolution: Resolution) -> list[_Piece]:
     for name, (u, _) in patch_grids(parent, resolution).items():
         edge = parent.surface(name).evaluate(u, np.array([1.0]))[:, 0]
         if name in parent.underwater and np.all(np.abs(edge[:, 2] - parent.draft) < 1e-6 * parent.draft):
-            edge[:, 1] = np.where(np.abs(edge[:, 1]) < _CENTREPLANE, 0.0, np.maximum(edge[:, 1], 0.0))
+            edge[:, 1] = np.where(np.abs(edge[:, 1]) < _CENTREPLANE * parent.length, 0.0, np.maximum(edge[:, 1], 0.0))
             lids.append(_Piece(_flat_face(edge, edge[:, 2]), False, True, True))
     return lids
 
@@ -139,7 +139,7 @@ def _triangles(rows: int, columns: int, outward: bool) -> IntArray:
     return faces if outward else faces[:, ::-1]
 
 
-def _assembled(pieces: list[_Piece], merge_hard_edges: bool) -> HullTopology:
+def _assembled(pieces: list[_Piece], length: float, merge_hard_edges: bool) -> HullTopology:
     """Both sides of the pieces as one mesh; hard edges keep their own vertices unless merged."""
     vertices, faces, flags, groups = [], [], [], []
     first = 0
@@ -155,19 +155,21 @@ def _assembled(pieces: list[_Piece], merge_hard_edges: bool) -> HullTopology:
             first += len(flat)
     points, group_of = np.concatenate(vertices), np.concatenate(groups)
     # Vertices of different groups are kept apart by a fourth coordinate.
-    keyed = np.column_stack([points, group_of * 1e3])
-    pairs = cKDTree(keyed).query_pairs(_MERGE, output_type="ndarray")
+    keyed = np.column_stack([points, group_of * length])
+    pairs = cKDTree(keyed).query_pairs(_MERGE * length, output_type="ndarray")
     owner = _merged(len(points), pairs)
     kept, index_of = np.unique(owner, return_inverse=True)
-    triangles = index_of[np.concatenate(faces)]
+    corners, triangles = points[kept], index_of[np.concatenate(faces)]
     proper = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
+    # A face within the centreplane is there twice, back to back, and encloses nothing.
+    proper &= np.any(corners[triangles, 1] != 0.0, axis=1)
     triangles, below = triangles[proper], np.concatenate(flags)[proper]
     parts: dict[str, tuple[IntArray, IntArray]] = {}
     for name, chosen in (("underwater", below), ("topsides", ~below)):
         if np.any(chosen):
             used, local = np.unique(triangles[chosen], return_inverse=True)
             parts[name] = (used, np.asarray(local.reshape(-1, 3), dtype=np.int64))
-    return HullTopology(points[kept], triangles, below, parts)
+    return HullTopology(corners, triangles, below, parts)
 
 
 def _merged(count: int, pairs: IntArray) -> IntArray:
@@ -191,7 +193,7 @@ def _topology(parent: ParentHull, resolution: Resolution, kind: str) -> HullTopo
         pieces = _pieces(parent, resolution)
         if kind == "underwater":
             pieces = [piece for piece in pieces if piece.underwater] + _lid(parent, resolution)
-        found = (parent, _assembled(pieces, merge_hard_edges=kind != "view"))
+        found = (parent, _assembled(pieces, parent.length, merge_hard_edges=kind != "view"))
         if len(_TOPOLOGIES) > 24:
             _TOPOLOGIES.clear()
         _TOPOLOGIES[key] = found

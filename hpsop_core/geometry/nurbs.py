@@ -16,20 +16,24 @@ from scipy.interpolate import BSpline
 from hpsop_core.errors import InputError
 from hpsop_core.typing_aliases import Array
 
+# Grids of meshes and panels come again with every design; long lists of scattered parameters (fits) do not.
+_LONGEST_CACHED = 1200
 
-@lru_cache(maxsize=4096)
-def _cached_basis(knots: bytes, degree: int, parameters: bytes, order: int) -> Array:
-    knot_vector = np.frombuffer(knots)
-    at = np.frombuffer(parameters)
-    count = len(knot_vector) - degree - 1
+
+def _basis(knots: Array, degree: int, at: Array, order: int) -> Array:
     if order == 0:
-        matrix: Array = BSpline.design_matrix(at, knot_vector, degree).toarray()
+        matrix: Array = BSpline.design_matrix(at, knots, degree).toarray()
     else:
-        spline = BSpline(knot_vector, np.eye(count), degree)
+        spline = BSpline(knots, np.eye(len(knots) - degree - 1), degree)
         # The derivative spline keeps clamped ends; its value at the last knot is the limit from the left.
         matrix = np.asarray(spline.derivative(order)(at), dtype=np.float64)
     matrix.setflags(write=False)
     return matrix
+
+
+@lru_cache(maxsize=512)
+def _cached_basis(knots: bytes, degree: int, parameters: bytes, order: int) -> Array:
+    return _basis(np.frombuffer(knots), degree, np.frombuffer(parameters), order)
 
 
 def basis_matrix(knots: Array, degree: int, parameters: Array, order: int = 0) -> Array:
@@ -45,7 +49,28 @@ def basis_matrix(knots: Array, degree: int, parameters: Array, order: int = 0) -
         Read-only matrix of shape (m, count).
     """
     at = np.clip(np.ascontiguousarray(parameters, dtype=np.float64), knots[0], knots[-1])
-    return _cached_basis(np.ascontiguousarray(knots, dtype=np.float64).tobytes(), degree, at.tobytes(), order)
+    knots = np.ascontiguousarray(knots, dtype=np.float64)
+    if len(at) > _LONGEST_CACHED:
+        return _basis(knots, degree, at, order)
+    return _cached_basis(knots.tobytes(), degree, at.tobytes(), order)
+
+
+def rising_spline_inverse(knots: Array, degree: int, control: Array, target: Array) -> Array:
+    """Parameters in [0, 1] at which a rising spline reaches the targets, clipped to its ends.
+
+    A table brackets, bisection finishes: the slope may vanish at the ends, where Newton's method would crawl.
+    """
+    spline = BSpline(knots, control, degree)
+    goal = np.asarray(target, dtype=np.float64)
+    grid = np.linspace(0.0, 1.0, 8 * len(control) + 1)
+    index = np.clip(np.searchsorted(np.maximum.accumulate(spline(grid)), goal, side="right") - 1, 0, len(grid) - 2)
+    low, high = grid[index], grid[index + 1]
+    for _ in range(44):
+        middle = 0.5 * (low + high)
+        above = spline(middle) > goal
+        high, low = np.where(above, middle, high), np.where(above, low, middle)
+    result = 0.5 * (low + high)
+    return np.where(goal <= control[0], 0.0, np.where(goal >= control[-1], 1.0, result))
 
 
 def clamped_knots(interior: Array | list[float], degree: int) -> Array:
