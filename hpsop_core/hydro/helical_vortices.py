@@ -63,39 +63,33 @@ def polyline_normal_velocity(points: Array, first: IntArray, control_points: Arr
     """
     # n . ((P-A) x (P-B)) = n . (A x B) + (B-A) . (P x n): matrix products over all segments instead of a cross product
     # for each pair. The segments that join one polyline to the next are computed too, and dropped.
-    start, end = points[:-1], points[1:]
+    along = np.ascontiguousarray(points.T)
+    start, end = along[:, :-1], along[:, 1:]
     element = end - start
-    moment = np.concatenate([_cross(start, end), element], axis=1)
-    velocity = np.zeros((points.shape[0], control_points.shape[0]))
-    triple = velocity[:-1]
-    np.matmul(moment, np.concatenate([normals, _cross(control_points, normals)], axis=1).T, out=triple)
-    square = points @ (-2.0 * control_points.T)
-    square += np.sum(points * points, axis=1)[:, None]
-    square += np.sum(control_points * control_points, axis=1)
+    moment = np.concatenate([_cross(start, end), element])
+    control = control_points.T
+    triple = np.concatenate([normals, _cross(control, normals.T).T], axis=1) @ moment
+    square = (-2.0 * control_points) @ along
+    square += np.sum(along * along, axis=0)
+    square += np.sum(control * control, axis=0)[:, None]
     distance = np.sqrt(np.maximum(square, 0.0))
-    near, far = distance[:-1], distance[1:]
-    denominator = square[:-1] + square[1:]
-    denominator -= np.sum(element * element, axis=1)[:, None]
+    near, far = distance[:, :-1], distance[:, 1:]
+    denominator = square[:, :-1] + square[:, 1:]
+    denominator -= np.sum(element * element, axis=0)
     denominator *= 0.5
     product = near * far
     denominator += product
     denominator *= product
     triple *= near + far
-    triple /= denominator
-    velocity[first[1:] - 1] = 0.0
-    return np.asarray(np.add.reduceat(velocity, first, axis=0) / (4.0 * np.pi))
+    velocity = np.zeros((control_points.shape[0], points.shape[0]))
+    np.divide(triple, denominator, out=velocity[:, :-1])
+    velocity[:, first[1:] - 1] = 0.0
+    return np.asarray(np.add.reduceat(velocity, first, axis=1).T / (4.0 * np.pi))
 
 
 def _cross(a: Array, b: Array) -> Array:
-    # numpy.cross costs several times its arithmetic on small arrays
-    return np.stack(
-        [
-            a[..., 1] * b[..., 2] - a[..., 2] * b[..., 1],
-            a[..., 2] * b[..., 0] - a[..., 0] * b[..., 2],
-            a[..., 0] * b[..., 1] - a[..., 1] * b[..., 0],
-        ],
-        axis=-1,
-    )
+    """Cross products of (3, n) arrays; numpy.cross costs several times its arithmetic on small ones."""
+    return np.stack([a[1] * b[2] - a[2] * b[1], a[2] * b[0] - a[0] * b[2], a[0] * b[1] - a[1] * b[0]])
 
 
 def helix_tail_velocity(

@@ -51,7 +51,7 @@ class LiftingLineSettings:
 
     strips: int = 10
     camber_effectiveness: float = CAMBER_EFFECTIVENESS
-    wake_nodes: int = 8
+    wake_nodes: int = 7
     lowest_wake_pitch: float = 0.42
     highest_wake_pitch: float = 1.65
 
