@@ -7,7 +7,9 @@ import logging
 import threading
 import weakref
 from collections.abc import Callable, Mapping, Sequence
+from functools import partial
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 from hpsop_core.case import Case
 from hpsop_core.design import DesignVariables
@@ -15,11 +17,13 @@ from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation_result import Evaluation
 from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.events import RunEvent, RunSnapshot
-from hpsop_core.runs.executor import checked_executor, make_workers
+from hpsop_core.runs.executor import LocalWorkers, checked_executor, make_workers
 from hpsop_core.runs.reader import RunReader, open_run
-from hpsop_core.runs.replay import RunDriver
 from hpsop_core.runs.store import RunStore
 from hpsop_core.runs.tasks import Physics, hydrodynamics
+
+if TYPE_CHECKING:
+    from hpsop_core.runs.replay import RunDriver
 
 _log = logging.getLogger(__name__)
 
@@ -125,20 +129,21 @@ class RunController:
                 return
             self._control = RunControl()
             self._error = None
-            self._driver = RunDriver(
-                self._store,
-                self._physics or hydrodynamics(),
-                lambda: make_workers(self._executor, self._workers),
-                self._control,
-                self._emit,
-            )
             self._ended.clear()
-            self._thread = threading.Thread(target=self._drive, args=(self._driver,), name="hpsop-run", daemon=True)
+            self._thread = threading.Thread(target=self._drive, args=(self._control,), name="hpsop-run", daemon=True)
             self._thread.start()
 
-    def _drive(self, driver: RunDriver) -> None:
+    def _drive(self, control: RunControl) -> None:
         try:
-            driver.run()
+            if self._executor == "local":
+                LocalWorkers.prepare()
+            # The algorithm's imports take a second, in which the fork server does its own.
+            from hpsop_core.runs.replay import RunDriver
+
+            physics = self._physics or hydrodynamics()
+            workers = partial(make_workers, self._executor, self._workers)
+            self._driver = RunDriver(self._store, physics, workers, control, self._emit)
+            self._driver.run()
         except HpsopError as error:
             self._error = error
         except Exception as error:  # noqa: BLE001 - raised again by wait(), in the thread that wants to know

@@ -88,17 +88,25 @@ class LocalWorkers:
         """For people."""
         return f"{self._count} local process" + ("es" if self._count > 1 else "")
 
+    @staticmethod
+    def prepare() -> str:
+        """Start the fork server, which then imports the solvers while its caller does other things.
+
+        Returns:
+            The start method of the workers.
+        """
+        if "forkserver" not in multiprocessing.get_all_start_methods():
+            return "spawn"
+        multiprocessing.forkserver.set_forkserver_preload(["hpsop_core.runs.preload"])
+        # First, because its start unblocks the very signals that we block for the fork server's.
+        multiprocessing.resource_tracker.ensure_running()
+        with _one_thread_environment(), _signals_blocked():
+            multiprocessing.forkserver.ensure_running()
+        return "forkserver"
+
     def _start(self) -> None:
-        if "forkserver" in multiprocessing.get_all_start_methods():
-            method = "forkserver"
-            multiprocessing.forkserver.set_forkserver_preload(["hpsop_core.runs.preload"])
-            # First, because its start unblocks the very signals that we block for the fork server's.
-            multiprocessing.resource_tracker.ensure_running()
-            with _one_thread_environment(), _signals_blocked():
-                multiprocessing.forkserver.ensure_running()
-        else:
-            method = "spawn"
-        self._pool = ProcessPoolExecutor(self._count, multiprocessing.get_context(method), initializer=start_worker)
+        context = multiprocessing.get_context(self.prepare())
+        self._pool = ProcessPoolExecutor(self._count, context, initializer=start_worker)
         try:
             with _one_thread_environment():
                 probes = [self._pool.submit(warm_up_task, 0.02) for _ in range(self._count)]

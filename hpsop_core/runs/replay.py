@@ -314,8 +314,8 @@ class RunDriver:
         outcome = self._known[key]
         if outcome.failed and planned:
             raise InputError(
-                f"{self._case.name}: the initial design cannot be evaluated at level {level}, and everything is "
-                f"normalised by it; see 'hpsop show {self._store.path} --design {level}' and change [initial]"
+                f"{self._case.name}: the initial design, by which everything is normalised, fails at level {level} "
+                f"({self._store.failure_of(level)}); change [initial] and choose another run file"
             )
 
     def _reference(self, level: int) -> Any:

@@ -194,6 +194,14 @@ class RunStore:
             row = self._connection.execute("SELECT elapsed FROM evaluations WHERE id = ?", (number,)).fetchone()
         return None if row is None else float(row[0])
 
+    def failure_of(self, number: int) -> str:
+        """Stage and reason of a failed evaluation; "" for any other."""
+        with self._guard:
+            row = self._connection.execute(
+                "SELECT stage, reason FROM evaluations WHERE id = ? AND status <> 'ok'", (number,)
+            ).fetchone()
+        return "" if row is None else f"{row[0]}: {row[1]}"
+
     def record_evaluation(self, number: int, candidate: Candidate, generation: int, result: str) -> Outcome:
         """Store a finished evaluation of the search; when this returns, it is never lost.
 

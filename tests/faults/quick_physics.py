@@ -6,6 +6,7 @@ import hashlib
 import os
 import signal
 import time
+from functools import partial
 from pathlib import Path
 
 from hpsop_core.case import Case
@@ -13,9 +14,6 @@ from hpsop_core.design import VARIABLE_NAMES, DesignVariables
 from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation_result import Evaluation
 from hpsop_core.runs.tasks import Physics
-
-MARKS = "HPSOP_TEST_MARKS"
-"""Environment variable naming a folder where faults that shall happen once leave a mark."""
 
 
 def evaluate(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
@@ -54,6 +52,11 @@ def no_reference_from_dict(data: object) -> None:
 def physics(function: object = evaluate) -> Physics:
     """A physics around one of this module's evaluations."""
     return Physics(function, no_reference, no_reference_from_dict)  # type: ignore[arg-type]
+
+
+def marking(function: object, marks: Path) -> Physics:
+    """A physics around an evaluation that leaves marks in a folder."""
+    return physics(partial(function, marks=marks))  # type: ignore[call-overload]
 
 
 def slow(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
@@ -108,10 +111,10 @@ def dying(case: Case, variables: DesignVariables, level: int, reference: object)
     return evaluate(case, variables, level, reference)
 
 
-def dying_once(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+def dying_once(case: Case, variables: DesignVariables, level: int, reference: object, marks: Path) -> Evaluation:
     """5 % of the designs have their worker killed by the system, the first time they are tried."""
     if not is_initial(case, variables) and lot(variables, level) < 0.05:
-        mark = Path(os.environ[MARKS]) / f"{lot(variables, level):.12f}"
+        mark = marks / f"{lot(variables, level):.12f}"
         if not mark.exists():
             mark.touch()
             os.kill(os.getpid(), signal.SIGKILL)
@@ -130,9 +133,9 @@ def failing_everywhere(case: Case, variables: DesignVariables, level: int, refer
     raise SolverFailure("hull", "no such form")
 
 
-def counting(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+def counting(case: Case, variables: DesignVariables, level: int, reference: object, marks: Path) -> Evaluation:
     """Leaves one line for each time it is called: nothing finished may be computed again."""
     time.sleep(0.02)
-    with open(Path(os.environ[MARKS]) / "calls", "a", encoding="utf-8") as stream:
+    with open(marks / "calls", "a", encoding="utf-8") as stream:
         stream.write(f"{level} {[float(getattr(variables, name)) for name in VARIABLE_NAMES]!r}\n")
     return evaluate(case, variables, level, reference)

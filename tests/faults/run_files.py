@@ -1,0 +1,110 @@
+"""What two run files must have in common, and small helpers around runs."""
+
+from __future__ import annotations
+
+import json
+import os
+import sqlite3
+import time
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+from hpsop_core.case import Case, load_case
+
+
+def small_case(**settings: object) -> Case:
+    """The recommended case with a small plan."""
+    defaults: dict[str, object] = {
+        "population": 10,
+        "generations": 6,
+        "level1_generations": 4,
+        "evaluation_time_limit": 60.0,
+    }
+    return load_case("dtc-p4119").replaced("optimization", **{**defaults, **settings})
+
+
+def content(path: Path, ids: bool = True) -> dict[str, Any]:
+    """Everything in a run file that must come out the same, bit for bit; times are left out.
+
+    Args:
+        path: the run file.
+        ids: whether the numbers of the designs count.
+    """
+    connection = sqlite3.connect(path)
+    rows = connection.execute(
+        "SELECT id, level, variables, origin, generation, status, stage, reason, feasible, first_objective, "
+        "second_objective, constraints, result FROM evaluations WHERE origin <> 'hand' ORDER BY id"
+    ).fetchall()
+    generations = connection.execute("SELECT number, level, data FROM generations ORDER BY number").fetchall()
+    connection.close()
+    evaluations = []
+    for row in rows:
+        result = json.loads(row[-1])
+        del result["elapsed"]
+        # repr of a float is exact; comparing texts also tells -0.0 from 0.0.
+        evaluations.append((*(repr(value) for value in row[0 if ids else 1 : -1]), json.dumps(result, sort_keys=True)))
+    return {"evaluations": evaluations, "generations": generations}
+
+
+def finished_designs(path: Path) -> set[tuple[int, str]]:
+    """(level, variables) of every evaluation in a file, also one that a killed process left behind."""
+    if not path.exists() or path.stat().st_size == 0:
+        return set()
+    connection = sqlite3.connect(path)
+    try:
+        return set(connection.execute("SELECT level, variables FROM evaluations").fetchall())
+    except sqlite3.OperationalError:
+        return set()  # killed before the tables were made
+    finally:
+        connection.close()
+
+
+def count_finished(path: Path) -> int:
+    """How many evaluations are in a file."""
+    if not path.exists() or path.stat().st_size == 0:
+        return 0
+    connection = sqlite3.connect(path)
+    try:
+        return int(connection.execute("SELECT count(*) FROM evaluations").fetchone()[0])
+    except sqlite3.OperationalError:
+        return 0
+    finally:
+        connection.close()
+
+
+def wait_until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
+    """Return when a condition holds; fail after a while."""
+    give_up = time.monotonic() + seconds
+    while not condition():
+        assert time.monotonic() < give_up, "waited in vain"
+        time.sleep(0.02)
+
+
+def is_alive(process: int) -> bool:
+    """Whether a process runs (a zombie does not)."""
+    try:
+        with open(f"/proc/{process}/stat", encoding="utf-8") as stream:
+            return stream.read().rsplit(")", 1)[1].split()[0] != "Z"
+    except OSError:
+        return False
+
+
+def descendants(process: int) -> set[int]:
+    """Process ids below a process, by the kernel's own list."""
+    found: set[int] = set()
+    parents: dict[int, list[int]] = {}
+    for name in os.listdir("/proc"):
+        if name.isdigit():
+            try:
+                with open(f"/proc/{name}/stat", encoding="utf-8") as stream:
+                    parent = int(stream.read().rsplit(")", 1)[1].split()[1])
+            except OSError:
+                continue
+            parents.setdefault(parent, []).append(int(name))
+    front = [process]
+    while front:
+        children = parents.get(front.pop(), [])
+        found.update(children)
+        front.extend(children)
+    return found
