@@ -116,6 +116,9 @@ def sinkage_and_trim(
     area, first, second = (float(np.trapezoid(breadth * at**k, at)) for k in range(3))
     # rise(x) = a + b x carries gravity * int breadth * rise * (1, x) dx
     determinant = gravity * (area * second - first**2)
+    if determinant <= 0.0:
+        # A submerged body has no waterplane that could hold it.
+        return 0.0, 0.0
     rise = (force * second - moment * first) / determinant
     slope = (moment * area - force * first) / determinant
     return -rise, slope
