@@ -1,0 +1,284 @@
+"""The promises in the docstring of ``RunStore``, one by one."""
+
+from __future__ import annotations
+
+import json
+import os
+import sqlite3
+import subprocess
+import sys
+import threading
+from pathlib import Path
+
+import pytest
+from quick_physics import evaluate
+from run_files import small_case
+
+from hpsop_core.errors import InputError
+from hpsop_core.optimization.generation import Generation
+from hpsop_core.optimization.problem import Candidate
+from hpsop_core.runs.lock import is_being_written, lock_path
+from hpsop_core.runs.reader import open_run
+from hpsop_core.runs.records import json_text
+from hpsop_core.runs.schema import HAND_IDS_BEGIN, SCHEMA_VERSION
+from hpsop_core.runs.store import RunStore, StoreUnwritableError
+
+CASE = small_case()
+INITIAL = CASE.initial.variables
+
+
+def candidate(draft: float = 14.5, level: int = 1) -> Candidate:
+    return Candidate(level, INITIAL.replaced({"draft": draft}), "sample")
+
+
+def result(asked: Candidate) -> str:
+    return json_text(evaluate(CASE, asked.variables, asked.level, None).as_dict())
+
+
+def generation(number: int, members: tuple[int, ...]) -> Generation:
+    return Generation(number, 1, members, members, members, 0.1, None, 1.0, 0, members[0], members[0], "")
+
+
+@pytest.fixture
+def path(tmp_path: Path) -> Path:
+    return tmp_path / "run.hpsop"
+
+
+def test_1_what_was_recorded_survives_a_kill_in_the_middle_of_the_next_write(path: Path) -> None:
+    script = f"""
+import os, sys
+sys.path[:0] = [{str(Path(__file__).parent)!r}, {str(Path(__file__).parents[2])!r}]
+from pathlib import Path
+from test_runs_store import CASE, candidate, result
+from hpsop_core.runs.store import RunStore
+store = RunStore(Path({str(path)!r}), CASE)
+for number in range(1, 31):
+    asked = candidate(14.0 + number / 100)
+    store.record_evaluation(number, asked, 1, result(asked))
+with store._writing() as connection:
+    connection.execute("INSERT INTO journal (at, text) VALUES (0, 'half written')")
+    os.kill(os.getpid(), 9)
+"""
+    ended = subprocess.run([sys.executable, "-c", script], check=False)
+    assert ended.returncode == -9
+    assert not is_being_written(path), "promise 4: a killed writer's lock blocks nobody"
+    run = open_run(path)
+    assert run.progress() == (0, 30)
+    assert [design.evaluation.variables.draft for design in run.designs(list(range(1, 31)))] == [
+        14.0 + number / 100 for number in range(1, 31)
+    ]
+    assert run.summary()["journal"] == []
+    assert run.state()[0] == "interrupted"
+    store = RunStore(path)
+    assert len(store.outcomes()) == 30
+    store.close()
+    assert not lock_path(path).exists()
+
+
+def test_2_finished_evaluations_and_generations_cannot_be_changed(path: Path) -> None:
+    store = RunStore(path, CASE)
+    asked = candidate()
+    store.record_evaluation(1, asked, 1, result(asked))
+    store.record_generation(generation(1, (1,)), 0.5)
+    for table in ("evaluations", "generations"):
+        for statement in (f"UPDATE {table} SET elapsed = 0", f"DELETE FROM {table}"):
+            with pytest.raises(sqlite3.IntegrityError, match="is never"):
+                store._connection.execute(statement)
+    with pytest.raises(sqlite3.IntegrityError):
+        store.record_generation(generation(1, (1,)), 0.5)
+    store.close()
+
+
+def test_3_one_record_a_design_and_level_and_hand_made_designs_apart(path: Path) -> None:
+    store = RunStore(path, CASE)
+    asked = candidate()
+    store.record_evaluation(1, asked, 1, result(asked))
+    with pytest.raises(sqlite3.IntegrityError):
+        store.record_evaluation(2, asked, 1, result(asked))
+    other_level = candidate(level=2)
+    store.record_evaluation(2, other_level, 1, result(other_level))
+    by_hand = evaluate(CASE, asked.variables, 1, None)
+    number = store.record_by_hand(by_hand)
+    assert number == HAND_IDS_BEGIN
+    assert store.record_by_hand(by_hand) == number
+    assert store.record_by_hand(evaluate(CASE, candidate(14.2).variables, 1, None)) == number + 1
+    assert {outcome.evaluation_id for outcome in store.outcomes().values()} == {1, 2}
+    store.close()
+    run = open_run(path)
+    assert [record.id for record in run.by_hand()] == [number, number + 1]
+    assert [point.id for point in run.archive()] == [1, 2]
+    assert run.design(number).origin == "hand"
+
+
+def test_4_a_second_writer_is_refused_and_told_who_writes(path: Path) -> None:
+    store = RunStore(path, CASE)
+    with pytest.raises(InputError, match=f"written by process {os.getpid()} on .* since"):
+        RunStore(path)
+    script = f"""
+import sys
+sys.path.insert(0, {str(Path(__file__).parents[2])!r})
+from pathlib import Path
+from hpsop_core.runs.store import RunStore
+RunStore(Path({str(path)!r}))
+"""
+    refused = subprocess.run([sys.executable, "-c", script], check=False, capture_output=True, text=True)
+    assert "InputError" in refused.stderr and f"process {os.getpid()}" in refused.stderr
+    store.close()
+    RunStore(path).close()
+    # A lock file without its owner's lock is litter, not a lock.
+    lock_path(path).write_text(json.dumps({"process": 1, "host": "elsewhere"}))
+    assert not is_being_written(path)
+    RunStore(path).close()
+
+
+def test_5_readers_read_while_it_is_written_and_see_whole_generations(path: Path) -> None:
+    store = RunStore(path, CASE)
+    stop = threading.Event()
+    seen: list[int] = []
+    faults: list[str] = []
+
+    def read() -> None:
+        run = open_run(path)
+        while not stop.is_set():
+            last = run.generation()
+            if last is not None:
+                seen.append(last.number)
+                # All of a generation's designs are there when it is.
+                if len(run.designs(last.members)) != 4:
+                    faults.append(f"generation {last.number} misses designs")
+
+    readers = [threading.Thread(target=read) for _ in range(3)]
+    for reader in readers:
+        reader.start()
+    number = 0
+    for step in range(1, 41):
+        members = []
+        for _ in range(4):
+            number += 1
+            asked = candidate(14.0 + number / 1000)
+            store.record_evaluation(number, asked, step, result(asked))
+            members.append(number)
+        store.record_generation(generation(step, tuple(members)), 0.0)
+    stop.set()
+    for reader in readers:
+        reader.join()
+    store.close()
+    assert not faults
+    assert len(set(seen)) > 1, "the readers saw the run grow"
+    assert open_run(path).generation().number == 40
+
+
+def test_6_a_full_disk_refuses_the_write_and_leaves_the_file_as_it_was(path: Path) -> None:
+    store = RunStore(path, CASE)
+    asked = candidate()
+    store.record_evaluation(1, asked, 1, result(asked))
+    pages = store._connection.execute("PRAGMA page_count").fetchone()[0]
+    store._connection.execute(f"PRAGMA max_page_count = {pages}")
+    number = 1
+    with pytest.raises(StoreUnwritableError, match="full"):
+        for number in range(2, 50):
+            asked = candidate(14.0 + number / 100)
+            store.record_evaluation(number, asked, 1, result(asked))
+    assert open_run(path).progress()[1] == number - 1
+    store._connection.execute("PRAGMA max_page_count = 1000000")
+    store.record_evaluation(number, asked, 1, result(asked))
+    assert open_run(path).progress()[1] == number
+    store.close()
+
+
+def test_6_a_file_that_lost_its_name_is_noticed(path: Path, tmp_path: Path) -> None:
+    store = RunStore(path, CASE)
+    path.rename(tmp_path / "moved.hpsop")
+    with pytest.raises(StoreUnwritableError, match="gone"):
+        store.note("lost?")
+    path.write_bytes(b"")
+    with pytest.raises(StoreUnwritableError, match="another file"):
+        store.note("lost?")
+    path.unlink()
+    (tmp_path / "moved.hpsop").rename(path)
+    store.note("back")
+    store.close()
+
+
+def test_7_other_files_are_refused_with_the_reason_and_left_alone(path: Path, tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no such run file"):
+        open_run(path)
+    with pytest.raises(InputError, match="holds no run"):
+        RunStore(path)
+    assert not path.exists()
+    foreign = tmp_path / "foreign.hpsop"
+    connection = sqlite3.connect(foreign)
+    connection.execute("CREATE TABLE run (key, value)")
+    connection.commit()
+    connection.close()
+    text = tmp_path / "text.hpsop"
+    text.write_text("not a database, but long enough to look like one at first sight" * 20)
+    for file, words in ((foreign, "another program"), (text, "not a database"), (tmp_path, "folder|no such run")):
+        before = file.read_bytes() if file.is_file() else b""
+        for opened in (lambda file=file: open_run(file), lambda file=file: RunStore(file, CASE)):
+            with pytest.raises(InputError, match=words):
+                opened()
+        assert not file.is_file() or file.read_bytes() == before
+    with pytest.raises(InputError, match="cannot be written"):
+        RunStore(tmp_path / "nowhere" / "run.hpsop", CASE)
+
+
+def test_7_a_newer_schema_is_refused_and_an_unknown_older_one_too(path: Path) -> None:
+    RunStore(path, CASE).close()
+    for version, words in ((SCHEMA_VERSION + 1, "newer hpsop"), (-1, "no longer reads")):
+        connection = sqlite3.connect(path)
+        connection.execute(f"PRAGMA user_version = {version}")
+        connection.close()
+        for opened in (lambda: open_run(path), lambda: RunStore(path)):
+            with pytest.raises(InputError, match=words):
+                opened()
+
+
+def test_7_an_older_schema_is_lifted(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    RunStore(path, CASE).close()
+    monkeypatch.setattr("hpsop_core.runs.schema.SCHEMA_VERSION", SCHEMA_VERSION + 1)
+    monkeypatch.setattr(
+        "hpsop_core.runs.schema.MIGRATIONS", {SCHEMA_VERSION: "ALTER TABLE journal ADD COLUMN author TEXT"}
+    )
+    store = RunStore(path)
+    assert store.case == CASE
+    store._connection.execute("SELECT author FROM journal")
+    store.close()
+
+
+def test_a_kill_while_the_file_is_being_made_leaves_an_empty_run_to_begin(path: Path) -> None:
+    # What a kill after the journal mode was set, and before the tables were there, leaves behind.
+    connection = sqlite3.connect(path)
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.close()
+    assert path.stat().st_size > 0
+    with pytest.raises(InputError, match="holds no run"):
+        open_run(path)
+    store = RunStore(path, CASE)
+    assert store.created
+    store.close()
+
+
+def test_the_case_comes_back_to_the_last_digit(path: Path) -> None:
+    case = CASE.with_bounds({"draft": (14.0 + 1e-15, 14.5)})
+    RunStore(path, case, (INITIAL,)).close()
+    run = open_run(path)
+    assert run.case == case
+    assert run.seeds == (INITIAL,)
+    store = RunStore(path, CASE)
+    assert not store.created and store.case == case, "a file that holds a run is opened as it is"
+    store.close()
+
+
+def test_a_finished_file_opens_where_nothing_can_be_written_and_leaves_no_litter(path: Path) -> None:
+    store = RunStore(path, CASE)
+    asked = candidate()
+    store.record_evaluation(1, asked, 0, result(asked))
+    store.close()
+    folder = path.parent
+    folder.chmod(0o555)
+    try:
+        assert open_run(path).progress() == (0, 1)
+    finally:
+        folder.chmod(0o755)
+    assert [file.name for file in folder.iterdir()] == ["run.hpsop"]
