@@ -4,9 +4,9 @@ viser 1.1.1 sends no event from its own plots. What does work (measured, and gua
 ``gui.add_html`` inserts HTML whose inline handlers run, and a hidden ``gui.add_text`` carries a text to Python when its
 input element is set and an ``input`` event dispatched. ``assets/page.js`` does both; this module is its other end.
 
-The text is a JSON list of the latest events, each with a rising number ``n``, because viser passes on only the newest of
-a burst: what was dropped comes again with the next message, and what was seen before is skipped here. Everything that
-arrives is checked: a browser may send anything.
+The text is a JSON list of the latest events, each with a rising number ``n``, because viser passes on only the newest
+of a burst: what was dropped comes again with the next message, and what was seen before is skipped here. Everything
+that arrives is checked: a browser may send anything.
 """
 
 from __future__ import annotations

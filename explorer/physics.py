@@ -1,7 +1,7 @@
 """What the page asks of hpsop_core about one design: numbers, curves, lines and meshes, each remembered.
 
-Nothing here knows viser. Every answer depends on the case and the variables alone, so it is kept in small caches that all
-browsers share; memory stays flat however many designs are looked at.
+Nothing here knows viser. Every answer depends on the case and the variables alone, so it is kept in small caches that
+all browsers share; memory stays flat however many designs are looked at.
 """
 
 from __future__ import annotations
@@ -21,8 +21,9 @@ from hpsop_core.evaluation import Reference, design_hull, evaluate, reference_fo
 from hpsop_core.evaluation_result import Evaluation
 
 Value = TypeVar("Value")
-_STATIONS = np.arange(0.0, 20.5, 1.0)
-_FROUDE_POINTS = {1: 19, 2: 9}
+# The classic twenty, halved towards the ends where the form changes fast, and the bulb ahead of FP.
+_STATIONS = np.array([-0.2, 0.0, 0.5, 1.0, 1.5, *range(2, 19), 18.5, 19.0, 19.5, 20.0, 20.2])
+_FROUDE_POINTS = {1: 33, 2: 9}
 
 
 class Remembered(Generic[Value]):
@@ -141,19 +142,19 @@ class Physics:
 
 def _hull_lines(case: Case, variables: DesignVariables) -> HullLines:
     hull = design_hull(case, variables)
-    v = np.linspace(0.0, 1.0, 33)
-    sections: list[tuple[float, tuple[np.ndarray, ...]]] = []
-    stations = [(-0.35, -0.35), *((float(s), float(s)) for s in _STATIONS), (20.2, 20.2)]
-    for station, at in stations:
-        x = at / 20.0 * hull.length
-        parts = []
-        for patch in hull.patches:
-            u = patch.parameter(np.array([x]))
-            line = patch.evaluate(u, v)[0]
-            if abs(float(line[0, 0]) - x) < 1e-3 * hull.length / 20.0:
-                parts.append(line[:, 1:])
-        if parts:
-            sections.append((station, tuple(parts)))
+    v = np.linspace(0.0, 1.0, 29)
+    x = _STATIONS / 20.0 * hull.length
+    parts: dict[int, list[np.ndarray]] = {}
+    for patch in hull.patches:
+        # all stations of a patch at once: finding their parameters is what costs
+        first, last = hull.station_map(np.array(hull.parent.extent(patch.name)))
+        inside = np.flatnonzero((x > first - 1e-6) & (x < last + 1e-6))
+        if not inside.size:
+            continue
+        grid = patch.evaluate(patch.parameter(x[inside]), v)
+        for index, line in zip(inside.tolist(), grid, strict=True):
+            parts.setdefault(index, []).append(line[:, 1:])
+    sections = [(float(_STATIONS[index]), tuple(lines)) for index, lines in sorted(parts.items())]
     hydrostatics = hull.hydrostatics
     return HullLines(
         sections=tuple(sections),

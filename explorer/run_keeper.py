@@ -1,7 +1,7 @@
 """The run on display: driven by this program, or read from a file that may be written by another one.
 
-It turns what the core tells (a controller's events, a file that grows) into pictures (explorer/run_picture.py). A picture
-is made on the shared worker, at most a few times a second, from what is new in the file.
+It turns what the core tells (a controller's events, a file that grows) into pictures (explorer/run_picture.py). A
+picture is made on the shared worker, at most a few times a second, from what is new in the file.
 """
 
 from __future__ import annotations

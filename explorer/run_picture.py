@@ -1,4 +1,4 @@
-"""What a run looks like at one moment: arrays that charts draw from, whoever drives the run and from where it is read."""
+"""What a run looks like at one moment: arrays that charts draw from, whoever drives the run."""
 
 from __future__ import annotations
 

@@ -72,7 +72,6 @@
   document.body.appendChild(band);
   disposers.push(() => band.remove());
   let drag = null;
-  let swallowClick = false;
   listen(document, "pointerdown", (event) => {
     const svg = chartOf(event.target);
     H.active = svg ? svg.dataset.chart : null;
@@ -124,20 +123,32 @@
     if (!svg) return;
     const p = point(svg, event);
     if (done.moved && done.mode !== "none") {
-      swallowClick = true;
-      setTimeout(() => { swallowClick = false; }, 0);
       if (done.mode === "box" || done.mode === "brush")
         H.send({ t: done.mode, chart: done.chart, x0: done.start.x, y0: done.start.y, x1: p.x, y1: p.y, fx0: done.start.fx, fy0: done.start.fy, fx1: p.fx, fy1: p.fy });
     } else if (svg.dataset.click && event.button === 0) {
       H.send({ t: "click", chart: done.chart, x: p.x, y: p.y, fx: p.fx, fy: p.fy, shift: event.shiftKey, twice: event.detail > 1 });
     }
   }, true);
-  listen(document, "click", (event) => {
-    if (swallowClick) return;
-    const button = event.target.closest ? event.target.closest("[data-act]") : null;
+  // A button may be redrawn between press and release, and the browser then drops its click: what was pressed and what
+  // is released are compared by name instead.
+  const buttonOf = (node) => (node && node.closest ? node.closest("[data-act]") : null);
+  const nameOf = (button) => button && button.dataset.act + "|" + (button.dataset.arg || "");
+  let pressed = null;
+  function act(button, shift) {
     if (!button || button.getAttribute("aria-disabled") === "true") return;
-    if (button.dataset.local === "screenshot") return screenshot();
-    H.send({ t: "act", name: button.dataset.act, arg: button.dataset.arg || "", shift: event.shiftKey });
+    H.send({ t: "act", name: button.dataset.act, arg: button.dataset.arg || "", shift });
+  }
+  listen(document, "pointerdown", (event) => {
+    pressed = event.button === 0 ? nameOf(buttonOf(event.target)) : null;
+  }, true);
+  listen(document, "pointerup", (event) => {
+    const button = buttonOf(event.target);
+    if (pressed && button && nameOf(button) === pressed) act(button, event.shiftKey);
+    pressed = null;
+  }, true);
+  listen(document, "click", (event) => {
+    // detail 0: pressed with the keyboard or by a screen reader
+    if (event.detail === 0) act(buttonOf(event.target), event.shiftKey);
   }, true);
   listen(document, "dblclick", (event) => {
     const svg = chartOf(event.target);
@@ -177,9 +188,12 @@
     if (!source.innerHTML.trim()) return hideTip();
     tip.innerHTML = source.innerHTML;
     tip.style.display = "block";
-    const [x, y] = H.pointer || [0, 0];
+    // beside the chart, never over it: the pointer's neighbours stay in sight
+    const svg = document.querySelector('svg[data-chart="' + hovered + '"]');
+    const box = svg ? svg.getBoundingClientRect() : { left: innerWidth };
+    const y = (H.pointer || [0, 0])[1];
     const w = tip.offsetWidth, h = tip.offsetHeight;
-    tip.style.left = Math.max(4, x - w - 16 > 4 ? x - w - 16 : Math.min(x + 16, innerWidth - w - 4)) + "px";
+    tip.style.left = Math.max(4, box.left - w - 8) + "px";
     tip.style.top = Math.max(4, Math.min(y - h / 2, innerHeight - h - 4)) + "px";
   };
 
@@ -224,5 +238,4 @@
     clearTimeout(resizeTimer);
     resizeTimer = setTimeout(() => { place(); H.send({ t: "size", width: innerWidth, height: innerHeight }); }, 200);
   });
-  function screenshot() { H.send({ t: "act", name: "screenshot", arg: "" }); }
 })

@@ -130,7 +130,7 @@ def open_water_chart(designs: Sequence[tuple[Series, Evaluation]], width: float,
                     f'{float(plot.py(condition.thrust_coefficient)):.1f}V{plot.height - 50:.1f}" class="guide"/>'
                 )
     keys = [("line", f"{series.css} {series.dash}", series.name) for series, _, _ in curves]
-    keys.append(("dash", "required", "required KT"))
+    keys.append(("dash", "required soft", "required KT"))
     return plot.svg("open_water") + legend(keys)
 
 

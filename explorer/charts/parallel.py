@@ -127,7 +127,7 @@ def brushed(picture: RunPicture, fx: float, fy0: float, fy1: float) -> tuple[str
 
 
 def _axis_limits(picture: RunPicture, quantity: Quantity, values: NDArray[np.float64] | None) -> tuple[float, float]:
-    """From the feasible designs, widened to the bounds where the axis is a variable; the same for drawing and brushing."""
+    """From the feasible designs, widened to a variable's bounds; the same for drawing and brushing."""
     usable = values[picture.feasible] if values is not None else np.zeros(0)
     usable = usable[np.isfinite(usable)]
     low, high = (float(usable.min()), float(usable.max())) if usable.size else (np.inf, -np.inf)

@@ -115,7 +115,7 @@ def pareto_chart(
         width, height: px.
     """
     x_limits, y_limits = options.limits or automatic_limits(picture, options)
-    plot = Plot(width, height, x_limits, y_limits, *titles, margins=(50, 12, 8, 34))
+    plot = Plot(width, height, x_limits, y_limits, *titles, margins=(50, 18, 8, 34))
     drawn = drawn_designs(picture, options)
     keep = picture.inside(options.filters or {})
     f = picture.objectives

@@ -11,6 +11,7 @@ from explorer.bridge import PageEvent
 from explorer.charts.curves import Series
 from explorer.state import Session, Shown
 from explorer.views.chips import box, chip, chips
+from explorer.views.slot import Slot
 
 WIDTH = 470.0
 _DASHES = ("dash", "dot", "dash", "dot")
@@ -39,8 +40,8 @@ class ChartsView:
     def __init__(self, session: Session, gui: viser.GuiApi, tabs: Mapping[str, ChartTab]) -> None:
         self._session = session
         self._tabs = tabs
-        self._bar = gui.add_html("")
-        self._html = gui.add_html("")
+        self._bar = Slot(gui)
+        self._html = Slot(gui)
         session.handle("act", "tab", self._choose)
         for topic in sorted({topic for tab in tabs.values() for topic in tab.topics}):
             session.hub.on((topic,), lambda topic=topic: self._topic(topic))
@@ -50,15 +51,15 @@ class ChartsView:
     def draw(self) -> None:
         """Draw the bar and the chosen chart."""
         chosen = self._chosen()
-        self._bar.content = box(
-            chips(*(chip("tab", tab.title, tab.name, on=tab.name == chosen.name) for tab in self._tabs.values()))
+        self._bar.show(
+            box(chips(*(chip("tab", tab.title, tab.name, on=tab.name == chosen.name) for tab in self._tabs.values())))
         )
-        self._html.content = box(f'<div data-chart-tab="{chosen.name}">{chosen.render(self._session)}</div>')
+        self._html.show(box(f'<div data-chart-tab="{chosen.name}">{chosen.render(self._session)}</div>'))
 
     def _topic(self, topic: str) -> None:
         chosen = self._chosen()
         if topic in chosen.topics:
-            self._html.content = box(f'<div data-chart-tab="{chosen.name}">{chosen.render(self._session)}</div>')
+            self._html.show(box(f'<div data-chart-tab="{chosen.name}">{chosen.render(self._session)}</div>'))
 
     def _chosen(self) -> ChartTab:
         return self._tabs.get(self._session.tab) or next(iter(self._tabs.values()))

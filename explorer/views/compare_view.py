@@ -8,6 +8,7 @@ from explorer.bridge import PageEvent
 from explorer.charts.plot import escape
 from explorer.state import Session
 from explorer.views.chips import box, chip, chips
+from explorer.views.slot import Slot
 from explorer.views.tables import many_table
 
 
@@ -16,7 +17,7 @@ class CompareView:
 
     def __init__(self, session: Session, gui: viser.GuiApi) -> None:
         self._session = session
-        self._html = gui.add_html("")
+        self._html = Slot(gui)
         session.hub.on(("pins",), self.draw)
         session.handle("act", "unpin", self._unpin)
         session.handle("act", "show_pin", self._show)
@@ -26,10 +27,12 @@ class CompareView:
         """Draw everything again."""
         session = self._session
         if not session.pins:
-            self._html.content = box(
-                '<p class="soft">No design is pinned. Select a design and press <b>pin</b> in the Design tab: up to four '
-                "stand here side by side, their curves and body plans overlay in Charts, and the first pin's hull can be "
-                "seen as the ghost in 3D.</p>"
+            self._html.show(
+                box(
+                    '<p class="soft">No design is pinned. Select one and press <b>pin</b> in the Design tab: up to four '
+                    "stand here side by side, their curves and body plans overlay in Charts, and the first pin's "
+                    "hull can be the ghost in 3D.</p>"
+                )
             )
             return
         rows = []
@@ -45,7 +48,7 @@ class CompareView:
             )
         initial = session.app.initial_shown(session.pins[-1].evaluation.level)
         table = many_table(initial, session.pins, session.picture.case.conditions.froude_numbers)
-        self._html.content = box("".join(rows) + table)
+        self._html.show(box("".join(rows) + table))
 
     def _index(self, event: PageEvent) -> int | None:
         index = int(event.arg) if event.arg.isdecimal() and len(event.arg) < 3 else -1

@@ -7,6 +7,7 @@ import viser
 from explorer.bridge import PageEvent
 from explorer.state import Session
 from explorer.views.chips import box, chip, chips
+from explorer.views.slot import Slot
 from explorer.views.tables import comparison_table, headline, warnings_html
 
 
@@ -15,7 +16,7 @@ class DesignView:
 
     def __init__(self, session: Session, gui: viser.GuiApi) -> None:
         self._session = session
-        self._html = gui.add_html("")
+        self._html = Slot(gui)
         session.hub.on(("selection", "pins", "run"), self.draw)
         session.handle("act", "choose", self._choose)
         session.handle("act", "pin", self._pin)
@@ -31,7 +32,7 @@ class DesignView:
             return
         self._last = state
         if shown is None:
-            self._html.content = box('<p class="soft">Computing the initial design …</p>')
+            self._html.show(box('<p class="soft">Computing the initial design …</p>'))
             return
         pinned = any(item.key == shown.key for item in session.pins)
         row = chips(
@@ -57,9 +58,11 @@ class DesignView:
         )
         initial = session.app.initial_shown(shown.evaluation.level)
         table = comparison_table(initial, shown, session.picture.case.conditions.froude_numbers)
-        self._html.content = box(
-            f'<div data-selected="{shown.design_id if shown.design_id is not None else shown.kind}">'
-            f"{headline(shown)}</div>{row}{warnings_html(shown)}{table}"
+        self._html.show(
+            box(
+                f'<div data-selected="{shown.design_id if shown.design_id is not None else shown.kind}">'
+                f"{headline(shown)}</div>{row}{warnings_html(shown)}{table}"
+            )
         )
 
     def _choose(self, event: PageEvent) -> None:

@@ -9,6 +9,7 @@ import viser
 from explorer.charts.plot import escape
 from explorer.state import AppState
 from explorer.views.chips import box, chip, chips
+from explorer.views.slot import Slot
 
 
 class LibraryView:
@@ -16,7 +17,7 @@ class LibraryView:
 
     def __init__(self, app: AppState, gui: viser.GuiApi) -> None:
         self._app = app
-        self._html = gui.add_html("")
+        self._html = Slot(gui)
         self._asked = ""
         app.hub.on(("library",), self.draw)
         self.draw()
@@ -45,4 +46,4 @@ class LibraryView:
             )
         empty = '<p class="soft">No runs yet. Each run is saved by itself and stands here.</p>'
         where = f'<p class="soft">Folder: {escape(services.folder_text())}</p>'
-        self._html.content = box((f'<div class="rows">{"".join(rows)}</div>' if rows else empty) + where)
+        self._html.show(box((f'<div class="rows">{"".join(rows)}</div>' if rows else empty) + where))

@@ -22,10 +22,11 @@ from explorer.quantities import objective_title
 from explorer.run_picture import GenerationPicture
 from explorer.state import Session
 from explorer.views.chips import box, chip, chips
+from explorer.views.slot import Slot
 from explorer.views.tables import design_card
 
 _WIDTH = 470.0
-_FRAME = (62.0, 42.0)  # px of the margins, both sides together
+_FRAME = (68.0, 42.0)  # px of the margins, both sides together
 _STEP_SECONDS = 0.25
 
 
@@ -40,7 +41,8 @@ class ParetoView:
         self._hovered: tuple[int, ...] = ()
         self._chart = gui.add_html("")
         self._slider = gui.add_slider("Generation", 0, 1, 1, 0, disabled=True)
-        self._controls = gui.add_html("")
+        self._controls = Slot(gui)
+        self._words = Slot(gui)
         self._tip = gui.add_html("")
         self._slider.on_update(self._on_slider)
         session.hub.on(("run", "scrub", "filter", "pins", "selection", "zoom pareto", "size", "pareto"), self.draw)
@@ -67,7 +69,7 @@ class ParetoView:
         self.draw()
 
     def _height(self) -> float:
-        return min(max(0.36 * self._session.size[1] - 20.0, 215.0), 380.0)
+        return min(max(0.5 * self._session.size[1] - 178.0, 190.0), 400.0)
 
     def _options(self) -> ParetoOptions:
         session = self._session
@@ -102,17 +104,18 @@ class ParetoView:
         objectives = picture.case.objectives
         titles = (objective_title(objectives.first, "f₁"), objective_title(objectives.second, "f₂"))
         svg = pareto_chart(picture, options, self._marks(), titles, _WIDTH, self._height())
-        keys = [
-            ("circle", "level1", "level 1 front"),
-            ("circle", "level2", "level 2 front"),
-            ("circle", "archive", "archive"),
-            ("square", "initial", "initial"),
-            ("star", "compromise", "compromise"),
-            ("diamond", "knee", "knee"),
-            ("ring", "selected", "selected"),
-        ]
+        keys = [("circle", "level1", "level 1 front")]
+        if picture.last_of_level(2) is not None:
+            keys.append(("circle", "level2", "level 2 front"))
+        if session.archive:
+            keys.append(("circle", "archive", "archive"))
         if session.infeasible:
-            keys.insert(3, ("circle", "infeasible", "infeasible"))
+            keys.append(("circle", "infeasible", "infeasible"))
+        keys.append(("square", "initial", "initial"))
+        if picture.compromise is not None:
+            keys += [("star", "compromise", "compromise"), ("diamond", "knee", "knee")]
+        if bool(picture.by_hand.any()):
+            keys.append(("square", "hand", "by hand"))
         if session.pins:
             keys.append(("triangle", "pin1", "pinned"))
         self._chart.content = box(svg + legend(keys))
@@ -122,21 +125,40 @@ class ParetoView:
         if session.filters:
             inside = int(picture.inside(session.filters).sum())
             filtered = chip("unfilter", f"{inside} of {len(picture.ids)} pass ✕", hint="drop all filters", on=True)
-        self._controls.content = box(
-            chips(
-                chip("step", "◀", "-1", disabled=count == 0, hint="previous generation"),
-                chip("play", "❚❚" if self._playing.is_set() else "▶", disabled=count < 2, hint="play the generations"),
-                chip("step", "▷", "1", disabled=count == 0, hint="next generation"),
-                chip("follow", "newest", on=session.scrubbed is None, hint="follow the run"),
-                f'<span class="soft">{_generation_words(generation, count)}</span>',
-                '<span class="gap"></span>',
-                chip("layer", "archive", "archive", on=session.archive, hint="every feasible design evaluated"),
-                chip(
-                    "layer", "infeasible", "infeasible", on=session.infeasible, hint="designs that break a constraint"
-                ),
-                chip("unzoom", "all", hint="show the whole chart (double click)") if "pareto" in session.limits else "",
+        self._controls.show(
+            box(
+                chips(
+                    chip("step", "‹", "-1", disabled=count == 0, hint="previous generation"),
+                    chip(
+                        "play",
+                        "❚❚ pause" if self._playing.is_set() else "▶ play",
+                        disabled=count < 2,
+                        hint="play the generations",
+                    ),
+                    chip("step", "›", "1", disabled=count == 0, hint="next generation"),
+                    chip("follow", "newest", on=session.scrubbed is None, hint="follow the run"),
+                    '<span class="gap"></span>',
+                    chip("layer", "archive", "archive", on=session.archive, hint="every feasible design evaluated"),
+                    chip(
+                        "layer",
+                        "infeasible",
+                        "infeasible",
+                        on=session.infeasible,
+                        hint="designs that break a constraint",
+                    ),
+                    chip("unzoom", "all", hint="show the whole chart (double click)")
+                    if "pareto" in session.limits
+                    else "",
+                )
             )
-            + (chips(filtered) if filtered else "")
+        )
+        self._words.show(
+            box(
+                chips(
+                    f'<span class="soft">{_generation_words(generation, count)}</span><span class="gap"></span>',
+                    filtered,
+                )
+            )
         )
         self._slider.max = max(count, 1)
         self._slider.min = 1 if count else 0

@@ -9,6 +9,7 @@ from explorer.quantities import number_text
 from explorer.run_picture import ACTIVE, FAILED, FINISHED, IDLE, PAUSED, RUNNING, STARTING, STOPPED, STOPPING
 from explorer.state import AppState
 from explorer.views.chips import box, chip, chips
+from explorer.views.slot import Slot
 
 _WORDS = {
     IDLE: "Ready",
@@ -27,7 +28,9 @@ class RunView:
 
     def __init__(self, app: AppState, gui: viser.GuiApi) -> None:
         self._app = app
-        self._html = gui.add_html("")
+        self._status = Slot(gui)
+        self._buttons = Slot(gui)
+        self._facts_slot = Slot(gui)
         self._bar = gui.add_progress_bar(0.0)
         app.hub.on(("run", "people"), self.draw)
         self.draw()
@@ -61,11 +64,15 @@ class RunView:
             else ""
         )
         name = f'<span class="soft" title="{escape(picture.name)}">{escape(_short(picture.name))}</span>'
-        self._html.content = box(
-            f'<div class="status" data-run-status="{status}" data-generation="{len(picture.generations)}">'
-            f'<b class="state-{status}">{word}</b> {name}<span class="gap"></span>'
-            f'<span class="soft">{people}</span></div>{chips(*buttons)}{message}{self._facts()}'
+        self._status.show(
+            box(
+                f'<div class="status" data-run-status="{status}" data-generation="{len(picture.generations)}">'
+                f'<b class="state-{status}">{word}</b> {name}<span class="gap"></span>'
+                f'<span class="soft">{people}</span></div>'
+            )
         )
+        self._buttons.show(box(chips(*buttons)))
+        self._facts_slot.show(box(f"{message}{self._facts()}"))
         total = max(picture.total_generations, 1)
         self._bar.value = min(100.0, 100.0 * (len(picture.generations) + services.part_of_generation()) / total)
         self._bar.visible = bool(picture.generations) or active

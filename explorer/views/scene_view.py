@@ -37,7 +37,7 @@ class SceneView:
         self._faces: dict[str, int] = {}
         self._drawn: tuple[object, ...] = ()
         self._geometry: SceneGeometry | None = None
-        self._pose_key: tuple[object, ...] = ()
+        self._placed: np.ndarray | None = None
         self._spinning = threading.Event()
         self.shown_design: object = None
         client.scene.configure_default_lights(cast_shadow=False)
@@ -84,14 +84,14 @@ class SceneView:
             except HpsopError as error:
                 session.notify("No geometry for this design", str(error), "yellow")
                 return
-            first = self._geometry is None
-            self._geometry = geometry
+            before, self._geometry = self._geometry, geometry
             with self._client.atomic():
                 self._draw_ship(geometry, ghost_geometry)
             self._client.flush()
             self._drawn = state
             self.shown_design = shown.design_id if shown.design_id is not None else shown.kind
-            if first:
+            # A ship of another size is framed anew, unless the user has moved the camera.
+            if before is None or (abs(before.length - geometry.length) > 0.02 * before.length and self._unmoved()):
                 self.place_camera()
         self._spin()
 
@@ -165,7 +165,11 @@ class SceneView:
         if handle is not None:
             handle.remove()
         self._handles[key] = self._client.scene.add_line_segments(
-            name, segments, np.full((len(segments), 2, 3), color, dtype=np.uint8), line_width=1.5
+            name,
+            segments,
+            np.full((len(segments), 2, 3), color, dtype=np.uint8),
+            thickness=1.5,
+            thickness_units="screen",
         )
 
     # ---- camera ----------------------------------------------------------------------------------------------------
@@ -173,6 +177,14 @@ class SceneView:
         if event.arg in PRESETS:
             self._session.set_options(camera=event.arg)
             self.place_camera()
+
+    def _unmoved(self) -> bool:
+        placed = self._placed
+        if placed is None:
+            return True
+        return float(np.linalg.norm(np.asarray(self._client.camera.position) - placed)) < 1e-3 * float(
+            np.linalg.norm(placed)
+        )
 
     def place_camera(self) -> None:
         """Put the camera where its preset stands."""
@@ -198,6 +210,7 @@ class SceneView:
             camera.position = pose.position
             camera.look_at = pose.look_at
             camera.fov = pose.field_of_view
+        self._placed = np.asarray(pose.position, dtype=float)
 
     # ---- spin ------------------------------------------------------------------------------------------------------
     def _spin(self) -> None:

@@ -11,6 +11,7 @@ from explorer.quantities import number_text
 from explorer.scene.camera import PRESETS, TITLES
 from explorer.state import Session
 from explorer.views.chips import chip, chips
+from explorer.views.slot import Slot
 from explorer.views.tables import headline
 
 _SWITCHES = (
@@ -29,8 +30,8 @@ class ToolbarView:
     def __init__(self, session: Session, gui: viser.GuiApi, client: viser.ClientHandle) -> None:
         self._session = session
         self._client = client
-        self._bar = gui.add_html("")
-        self._card = gui.add_html("")
+        self._bar = Slot(gui)
+        self._card = Slot(gui)
         session.hub.on(("options", "selection"), self.draw)
         session.hub.on(("selection", "options", "legend"), self.draw_card)
         session.handle("act", "switch", self._switch)
@@ -59,18 +60,22 @@ class ToolbarView:
                 )
                 for index, condition in enumerate(shown.evaluation.conditions)
             )
+        if not (options.waves or options.pressure or options.spin):
+            conditions = ""
         other = chip("switch", "Dark", "dark", on=options.dark) + chip("screenshot", "Screenshot")
-        self._bar.content = overlay(
-            "toolbar",
-            f'<div class="card">{chips(cameras)}'
-            f'<div style="height:4px"></div>{chips(switches, conditions, other)}</div>',
+        self._bar.show(
+            overlay(
+                "toolbar",
+                f'<div class="card">{chips(cameras, other)}<div style="height:4px"></div>'
+                f"{chips(switches, conditions)}</div>",
+            )
         )
 
     def draw_card(self) -> None:
         """The design's name and headline numbers, and legends."""
         shown = self._session.selected
         if shown is None:
-            self._card.content = overlay("card", '<div class="card">Computing the initial design …</div>')
+            self._card.show(overlay("card", '<div class="card">Computing the initial design …</div>'))
             return
         evaluation = shown.evaluation
         facts = ""
@@ -84,11 +89,13 @@ class ToolbarView:
                 f"f₂ {number_text(evaluation.objectives.get('f2'), 4)}"
             )
         legends = "".join(self._session.legends.values())
-        self._card.content = overlay(
-            "card",
-            f'<div class="card" data-card="'
-            f'{shown.design_id if shown.design_id is not None else shown.kind}">'
-            f'{headline(shown)}<br><span class="soft">{facts}</span>{legends}</div>',
+        self._card.show(
+            overlay(
+                "card",
+                f'<div class="card" data-card="'
+                f'{shown.design_id if shown.design_id is not None else shown.kind}">'
+                f'{headline(shown)}<br><span class="soft">{facts}</span>{legends}</div>',
+            )
         )
 
     def _switch(self, event: PageEvent) -> None:

@@ -107,7 +107,8 @@ class WhatIfView:
                 *(
                     (
                         f"condition {index + 1}: Rt, PD",
-                        f"{number_text(1e-3 * item.total_resistance, 0)} kN, {number_text(1e-6 * item.delivered_power, 2)} MW",
+                        f"{number_text(1e-3 * item.total_resistance, 0)} kN, "
+                        f"{number_text(1e-6 * item.delivered_power, 2)} MW",
                     )
                     for index, item in enumerate(evaluation.conditions)
                 ),

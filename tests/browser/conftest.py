@@ -1,0 +1,130 @@
+"""A real server on a real small case, and Debian's Chromium with software graphics."""
+
+from __future__ import annotations
+
+import shutil
+import socket
+import time
+from collections.abc import Callable, Iterator
+from pathlib import Path
+from typing import Any
+
+import pytest
+from playwright.sync_api import Browser, Page, sync_playwright
+
+from explorer.app import Explorer
+from explorer.security import free_port
+from hpsop_core.case import Case, load_case
+
+pytestmark = pytest.mark.browser
+# Software graphics on a busy machine: the first mesh alone may stall a page for many seconds.
+PATIENCE = 90_000
+_ARGUMENTS = [
+    "--no-sandbox",
+    "--disable-quic",
+    "--no-first-run",
+    "--disable-background-networking",
+    "--disable-component-update",
+    "--disable-sync",
+    "--use-angle=swiftshader",
+    "--enable-unsafe-swiftshader",
+]
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    """Everything in this folder needs Chromium."""
+    for item in items:
+        if Path(__file__).parent in item.path.parents:
+            item.add_marker(pytest.mark.browser)
+
+
+def small_case(**settings: Any) -> Case:
+    """The recommended case with a small search at level 1; the waves stated, so that level 2 is not needed."""
+    case = load_case("dtc-p4119").replaced(
+        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
+    )
+    return case.replaced("optimization", **{"population": 8, "generations": 40, "level1_generations": 40, **settings})
+
+
+@pytest.fixture(scope="session")
+def chromium() -> Iterator[Browser]:
+    """One browser process for all tests."""
+    names = ("chromium", "chromium-browser", "google-chrome")
+    found = next((path for name in names if (path := shutil.which(name))), None)
+    with sync_playwright() as playwright:
+        browser = playwright.chromium.launch(executable_path=found, args=_ARGUMENTS)
+        yield browser
+        browser.close()
+
+
+@pytest.fixture(scope="module")
+def explorer(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Explorer]:
+    """The page on the small case."""
+    folder = tmp_path_factory.mktemp("runs")
+    page = Explorer(small_case(), port=free_port("127.0.0.1", _any_port()), folder=folder, workers=2)
+    yield page
+    page.close()
+
+
+@pytest.fixture(scope="module")
+def open_page(chromium: Browser) -> Iterator[Callable[..., Page]]:
+    """Opens a page of its own browser context (as another person's browser) and waits until it stands."""
+    contexts = []
+
+    def open_one(explorer: Explorer, width: int = 1200, height: int = 700) -> Page:
+        context = chromium.new_context(viewport={"width": width, "height": height})
+        contexts.append(context)
+        page = context.new_page()
+        page.set_default_timeout(PATIENCE)
+        page.goto(explorer.address)
+        page.wait_for_selector("svg[data-chart=pareto]")
+        page.wait_for_selector('[data-selected="initial"]', state="attached")
+        return page
+
+    yield open_one
+    for context in contexts:
+        context.close()
+
+
+def _any_port() -> int:
+    with socket.socket() as probe:
+        probe.bind(("127.0.0.1", 0))
+        return int(probe.getsockname()[1])
+
+
+def wait_until(condition: Callable[[], object], seconds: float = 60.0, what: str = "") -> None:
+    """Poll until true.
+
+    Raises:
+        AssertionError: it did not become true.
+    """
+    give_up = time.monotonic() + seconds
+    while time.monotonic() < give_up:
+        if condition():
+            return
+        time.sleep(0.05)
+    raise AssertionError(f"waited {seconds:g} s in vain for {what or condition}")
+
+
+def session_of(explorer: Explorer, index: int = 0) -> Any:
+    """The Python side of the browser that came as number ``index``."""
+    return explorer.state.sessions[sorted(explorer.state.sessions)[index]]
+
+
+def front_marks(page: Page) -> list[tuple[float, float]]:
+    """Where the newest front's points stand on the screen."""
+    return [
+        (float(x), float(y))
+        for x, y in page.evaluate(
+            """() => [...document.querySelectorAll('svg[data-chart=pareto] path.mark.level1')].map((mark) => {
+                const box = mark.getBoundingClientRect();
+                return [box.x + box.width / 2, box.y + box.height / 2];
+            })"""
+        )
+    ]
+
+
+def press(page: Page, action: str, argument: str | None = None) -> None:
+    """Press a button with the mouse."""
+    extra = f'[data-arg="{argument}"]' if argument is not None else ""
+    page.locator(f'[data-act="{action}"]{extra}:visible').first.click()
