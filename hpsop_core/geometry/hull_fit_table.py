@@ -82,11 +82,40 @@ def _closing(at: Array, widths: Array) -> float:
 
 @dataclass(frozen=True, eq=False)
 class _Station:
-    """One station below the waterline: its section and whether it reaches the surface."""
+    """One station below the waterline.
+
+    Attributes:
+        x: m.
+        points: its section up to the waterline or, submerged, to its crown; above an aperture only the upper piece.
+        surface: it reaches the waterline.
+        skeg: the piece below an aperture, closed at its top, or None.
+    """
 
     x: float
     points: Array
     surface: bool
+    skeg: Array | None
+
+
+def _run(heights: Array, widths: Array, first: int, last: int, below: int) -> Array:
+    """Points of the positive readings first..last, closed on the centreline where zero readings follow.
+
+    Args:
+        heights, widths: readings of one station, rising.
+        first, last: the run.
+        below: readings up to this index are below or at the waterline; a run that ends there stays open at its top.
+    """
+    points: list[tuple[float, float]] = []
+    if first == 0:
+        points.append((0.0, float(heights[0])))
+    else:
+        second = min(first + 1, len(heights) - 1)
+        points.append((0.0, _closing(heights[[first - 1, first, second]], widths[[first, second]])))
+    points += [(float(widths[k]), float(heights[k])) for k in range(first, last + 1)]
+    if last < below:
+        second = max(last - 1, 0)
+        points.append((0.0, _closing(heights[[last + 1, last, second]], widths[[last, second]])))
+    return np.array(points)
 
 
 def _station(x: float, z: Array, y: Array, draft: float) -> _Station | None:
@@ -96,25 +125,22 @@ def _station(x: float, z: Array, y: Array, draft: float) -> _Station | None:
     at_draft = max(float(PchipInterpolator(z, y)(draft)), 0.0)
     heights = np.concatenate([z[below], [draft], z[above]])
     widths = np.concatenate([y[below], [at_draft], y[above]])
-    count = int(np.sum(below)) + 1
-    positive = np.flatnonzero(widths[:count] > 0.0)
+    top = int(np.sum(below))
+    positive = np.flatnonzero(widths[: top + 1] > 0.0)
     if len(positive) == 0:
         return None
-    first, last = int(positive[0]), int(positive[-1])
-    points: list[tuple[float, float]] = []
-    if first == 0:
-        points.append((0.0, float(heights[0])))
-    else:
-        second = min(first + 1, len(heights) - 1)
-        points.append((0.0, _closing(heights[[first - 1, first, second]], widths[[first, second]])))
-        if points[0][1] > draft * (1.0 - 1e-6):
-            return None
-    points += [(float(widths[k]), float(heights[k])) for k in range(first, last + 1)]
-    surface = last == count - 1
-    if not surface:
-        second = max(last - 1, 0)
-        points.append((0.0, _closing(heights[[last + 1, last, second]], widths[[last, second]])))
-    return _Station(x, tidy_section(x, np.array(points), 1e-6 * draft).points, surface)
+    runs = np.split(positive, np.flatnonzero(np.diff(positive) > 1) + 1)
+    last = int(runs[-1][-1])
+    points = _run(heights, widths, int(runs[-1][0]), last, top)
+    if points[0, 1] > draft * (1.0 - 1e-6):
+        return None
+    skeg = None
+    if len(runs) == 2 and last == top and len(runs[0]) > 1:
+        lower = _run(heights, widths, int(runs[0][0]), int(runs[0][-1]), top)
+        skeg = tidy_section(x, lower, 1e-6 * draft).points
+    elif len(runs) > 1:
+        points = _run(heights, widths, int(runs[0][0]), last, top)
+    return _Station(x, tidy_section(x, points, 1e-6 * draft).points, last == top, skeg)
 
 
 def _smooth_knots(x: Array, most: int) -> Array:
@@ -173,13 +199,16 @@ def _with_post(section: Array, draft: float) -> tuple[Array, float]:
     return whole.points, float(whole.chord_fractions()[len(section) - 1])
 
 
-def fit_underwater(table: HalfBreadths, draft: float) -> tuple[dict[str, PatchFit], dict[str, tuple[str, float, float]],
-                                                               list[tuple[str, str]]]:  # fmt: skip
-    """The patches below the waterline, how their girths correspond, and their flat open ends.
+@dataclass(frozen=True, eq=False)
+class UnderwaterFit:
+    """Patches below the waterline, how their girths correspond, and their flat open ends."""
 
-    Raises:
-        InputError: the hull has too few stations in the water.
-    """
+    fits: dict[str, PatchFit]
+    girth: dict[str, tuple[str, float, float]]
+    caps: list[tuple[str, str]]
+
+
+def _present_stations(table: HalfBreadths, draft: float) -> list[_Station]:
     found = [_station(float(x), table.z, row, draft) for x, row in zip(table.x, table.y, strict=True)]
     present = [k for k, station in enumerate(found) if station is not None]
     stations = [station for station in found if station is not None]
@@ -188,85 +217,177 @@ def fit_underwater(table: HalfBreadths, draft: float) -> tuple[dict[str, PatchFi
     if present[-1] - present[0] + 1 != len(present):
         gap = next(k for k in range(present[0], present[-1]) if k not in present)
         raise InputError(f"{table.name}: station {table.x[gap]:g} m has no breadth below the draft, its neighbours do")
+    floating = sum(station.surface for station in stations)
+    if floating < 4:
+        raise InputError(f"{table.name}: the hull reaches the draft at {floating} stations only; check the draft")
+    return stations
+
+
+def _aperture(stations: Sequence[_Station]) -> int | None:
+    """Index of the foremost station with a skeg below an aperture, where at least three of them follow each other."""
+    split = [k for k, s in enumerate(stations[: len(stations) // 2]) if s.skeg is not None]
+    if len(split) < 3 or split[-1] - split[0] + 1 != len(split):
+        return None
+    return split[-1]
+
+
+def _row_zero_from(knots: Array, start: float) -> int:
+    """First control point of those whose basis functions live at or above the knot ``start``."""
+    if start >= 1.0:
+        return len(knots) - DEGREE - 2
+    return int(np.searchsorted(knots, start)) - DEGREE
+
+
+def _pin_end(fixed_y: Array, fixed_z: Array, row: int, end: _End, draft: float, knots: Array) -> bool:
+    """Fixes a sharp end's edge on the centreplane; false for a flat open end."""
+    if end.bottom is None:
+        return False
+    fixed_y[row], fixed_z[row] = 0.0, _line(end.bottom, draft, knots)
+    return True
+
+
+def fit_underwater(table: HalfBreadths, draft: float) -> UnderwaterFit:
+    """The patches below the waterline: main, and where the table has them counter with skeg, and bulb.
+
+    Raises:
+        InputError: the hull has too few stations in the water.
+    """
+    stations = _present_stations(table, draft)
     floating = [k for k, station in enumerate(stations) if station.surface]
-    if len(floating) < 4:
-        raise InputError(f"{table.name}: the hull reaches the draft at {len(floating)} stations only; check the draft")
     aft, forward = floating[0], floating[-1]
-    ahead = stations[forward + 1 :]
-    behind = stations[:aft]
-    sections = [Section(s.x, s.points) for s in stations[aft : forward + 1] if s.surface]
-    ends: dict[bool, _End] = {}
-    posts: dict[bool, float] = {}
-    for side, rest in ((True, ahead), (False, behind)):
-        if len(rest) >= 2:
-            border = rest[0] if side else rest[-1]
-            points, part = _with_post(border.points, draft)
-            posts[side] = part
-            sections = [*sections, Section(border.x, points)] if side else [Section(border.x, points), *sections]
-            ends[side] = _End(border.x, None)
-        else:
-            ends[side] = _end(table, stations[aft : forward + 1], side, draft)
+    opening = _aperture(stations)
+    first = aft if opening is None else opening
+    sections = [Section(s.x, s.points) for s in stations[first : forward + 1] if s.surface]
     rows = int(np.sum(table.z < draft))
     interior = list(np.linspace(0.0, 1.0, int(np.clip(rows, 8, 22)) + 1)[1:-1])
-    for part in [value for value in posts.values() if value < 1.0]:
-        interior = sorted([k for k in interior if abs(k - part) > 0.02] + [part])
+    ahead = stations[forward + 1 :]
+    bulb_part = 0.0
+    if len(ahead) >= 2:
+        points, bulb_part = _with_post(ahead[0].points, draft)
+        sections.append(Section(ahead[0].x, points))
+        fore_end = _End(ahead[0].x, None)
+        if bulb_part < 1.0:
+            interior = sorted([k for k in interior if abs(k - bulb_part) > 0.02] + [bulb_part])
+    else:
+        fore_end = _end(table, stations[first : forward + 1], True, draft)
+    post = (0.0, 0.0)
+    if opening is None:
+        aft_end = _end(table, stations[aft : forward + 1], False, draft)
+    else:
+        border = stations[opening]
+        points, post = _with_aperture(border)
+        sections[0] = Section(border.x, points)
+        aft_end = _End(border.x, None)
+        low, high = post
+        interior = sorted([k for k in interior if not low - 0.02 < k < high + 0.02] + [low, high])
     knots = knots_at(interior)
-    x = np.unique(np.concatenate([[ends[False].x], [s.x for s in sections], [ends[True].x]]))
-    stations_map = StationMap.through(_smooth_knots(x, MOST_SPANS).tolist(), False, False)
-    fixed_y, fixed_z = free_net(stations_map, knots)
+    x = np.unique(np.concatenate([[aft_end.x], [s.x for s in sections], [fore_end.x]]))
+    station_map = StationMap.through(_smooth_knots(x, MOST_SPANS).tolist(), False, False)
+    fixed_y, fixed_z = free_net(station_map, knots)
     fixed_y[:, 0], fixed_z[:, -1] = 0.0, draft
     caps: list[tuple[str, str]] = []
-    for side, row in ((True, -1), (False, 0)):
-        bottom = ends[side].bottom
-        if bottom is not None:
-            fixed_y[row], fixed_z[row] = 0.0, _line(bottom, draft, knots)
-        elif side in posts:
-            # Every basis function that lives on the post is zero: the edge is in the centreplane there, exactly.
-            first = len(knots) - DEGREE - 2 if posts[side] == 1.0 else int(np.searchsorted(knots, posts[side])) - DEGREE
-            fixed_y[row, first:] = 0.0
-        else:
-            caps.append(("main", "last" if side else "first"))
-    length = float(table.x[-1] - table.x[0])
-    least = 1e-7 * length
-    fits = {"main": fit_patch(sections, stations_map, knots, fixed_y, fixed_z, **FIT, least_half_breadth=least)}
+    # On a post every basis function is zero in y: the edge lies in the centreplane there, exactly.
+    if bulb_part > 0.0:
+        fixed_y[-1, _row_zero_from(knots, bulb_part) :] = 0.0
+    elif not _pin_end(fixed_y, fixed_z, -1, fore_end, draft, knots):
+        caps.append(("main", "last"))
+    if opening is not None:
+        at = int(np.searchsorted(knots, post[0], side="right")) - 1
+        fixed_y[0, at - DEGREE : at + 1] = 0.0
+    elif not _pin_end(fixed_y, fixed_z, 0, aft_end, draft, knots):
+        caps.append(("main", "first"))
+    least = 1e-7 * float(table.x[-1] - table.x[0])
+    fits = {"main": fit_patch(sections, station_map, knots, fixed_y, fixed_z, **FIT, least_half_breadth=least)}
     girth = {"main": ("main", 0.0, 1.0)}
-    for side, rest, name in ((True, ahead, "bulb"), (False, behind, "stern_bulb")):
-        if side in posts:
-            edge = fits["main"].surface.control_points[-1 if side else 0]
-            fit, cap = _fit_submerged(table, rest, side, knots, edge, posts[side], least)
-            fits[name] = fit
-            girth[name] = ("main", 0.0, posts[side])
-            caps += [(name, "last" if side else "first")] if cap else []
-    return fits, girth, caps
+    net = fits["main"].surface.control_points
+    if bulb_part > 0.0:
+        fits["bulb"], flat = _fit_bulb(table, ahead, knots, net[-1], bulb_part, least)
+        girth["bulb"] = ("main", 0.0, bulb_part)
+        caps += [("bulb", "last")] if flat else []
+    if opening is not None:
+        girth |= {"counter": ("main", post[1], 1.0), "skeg": ("main", 0.0, post[0])}
+        end = _end(table, stations[aft : opening + 1], False, draft)
+        fits["counter"] = _fit_counter(stations[aft:opening], end, draft, knots, net[0], post[1], least)
+        caps += [("counter", "first")] if end.bottom is None else []
+        fits["skeg"] = _fit_skeg([s for s in stations[:opening] if s.skeg is not None], knots, net[0], post[0], least)
+        caps.append(("skeg", "first"))
+    return UnderwaterFit(fits, girth, caps)
 
 
-def _fit_submerged(
-    table: HalfBreadths, rest: Sequence[_Station], forward: bool, knots: Array, edge: Array, part: float, least: float
+def _with_aperture(station: _Station) -> tuple[Array, tuple[float, float]]:
+    """Skeg, post and counter of one station as one section, and the chord fractions where the post begins and ends."""
+    if station.skeg is None:
+        raise ValueError("no aperture here")
+    low, high = station.skeg[-1, 1], station.points[0, 1]
+    post = np.column_stack([np.zeros(5), np.linspace(low, high, 7)[1:-1]])
+    whole = Section(station.x, np.vstack([station.skeg, post, station.points]))
+    fractions = whole.chord_fractions()
+    first = len(station.skeg) - 1
+    return whole.points, (float(fractions[first]), float(fractions[first + 6]))
+
+
+def _fit_counter(
+    stations: Sequence[_Station], end: _End, draft: float, knots: Array, edge: Array, start: float, least: float
+) -> PatchFit:
+    """The patch above the aperture, on to the aft end of the waterline."""
+    knots_c, border = edge_segment(knots, edge, start, 1.0, np.array([]))
+    x = np.unique([end.x, *(s.x for s in stations), float(border[0, 0])])
+    station_map = StationMap.through(_smooth_knots(x, MOST_SPANS).tolist(), False, False)
+    fixed_y, fixed_z = free_net(station_map, knots_c)
+    fixed_y[:, 0], fixed_z[:, -1] = 0.0, draft
+    _pin_end(fixed_y, fixed_z, 0, end, draft, knots_c)
+    fixed_y[-1], fixed_z[-1] = border[:, 1], border[:, 2]
+    sections = [Section(s.x, s.points) for s in stations]
+    return fit_patch(sections, station_map, knots_c, fixed_y, fixed_z, **FIT, least_half_breadth=least, edge=border)
+
+
+def _fit_skeg(stations: Sequence[_Station], knots: Array, edge: Array, end: float, least: float) -> PatchFit:
+    """The patch below the aperture; its aft end is flat."""
+    knots_s, border = edge_segment(knots, edge, 0.0, end, np.linspace(0.15, 0.85, 6))
+    sections = [Section(s.x, s.skeg) for s in stations if s.skeg is not None]
+    x = np.array([*(s.x for s in sections), float(border[0, 0])])
+    station_map = StationMap.through(_smooth_knots(x, MOST_SPANS).tolist(), False, False)
+    fixed_y, fixed_z = free_net(station_map, knots_s)
+    fixed_y[:, 0], fixed_y[:, -1] = 0.0, 0.0
+    fixed_y[-1], fixed_z[-1] = border[:, 1], border[:, 2]
+    return fit_patch(sections, station_map, knots_s, fixed_y, fixed_z, **FIT, least_half_breadth=least, edge=border)
+
+
+def _fit_bulb(
+    table: HalfBreadths, rest: Sequence[_Station], knots: Array, edge: Array, part: float, least: float
 ) -> tuple[PatchFit, bool]:
-    """The patch of the submerged stations at one end; true where it ends flat instead of in a point."""
+    """The patch of the submerged stations at the bow; true where it ends flat instead of in a point."""
     knots_b, border = edge_segment(knots, edge, 0.0, part, np.array([]))
-    stations = [Section(s.x, s.points) for s in rest]
-    near = rest[-1] if forward else rest[0]
-    index = int(np.searchsorted(table.x, near.x)) + (1 if forward else -1)
-    pointed = 0 <= index < len(table.x)
-    x = [s.x for s in stations]
+    near = rest[-1]
+    index = int(np.searchsorted(table.x, near.x)) + 1
+    pointed = index < len(table.x)
+    x = [s.x for s in rest]
     if pointed:
-        x = [*x, float(table.x[index])] if forward else [float(table.x[index]), *x]
-    knot_stations = _smooth_knots(np.array(x), MOST_SPANS).tolist()
-    station_map = StationMap.through(knot_stations, pointed and not forward, pointed and forward)
+        x.append(float(table.x[index]))
+    station_map = StationMap.through(_smooth_knots(np.array(x), MOST_SPANS).tolist(), False, pointed)
     fixed_y, fixed_z = free_net(station_map, knots_b)
     fixed_y[:, 0], fixed_y[:, -1] = 0.0, 0.0
-    shared, end = (0, -1) if forward else (-1, 0)
-    fixed_y[shared], fixed_z[shared] = border[:, 1], border[:, 2]
+    fixed_y[0], fixed_z[0] = border[:, 1], border[:, 2]
     if pointed:
-        widest = near.points[int(np.argmax(near.points[:, 0])), 1]
-        fixed_y[end], fixed_z[end] = 0.0, widest
-    fit = fit_patch(stations, station_map, knots_b, fixed_y, fixed_z, **FIT, least_half_breadth=least, edge=border)
+        fixed_y[-1], fixed_z[-1] = 0.0, near.points[int(np.argmax(near.points[:, 0])), 1]
+    sections = [Section(s.x, s.points) for s in rest]
+    fit = fit_patch(sections, station_map, knots_b, fixed_y, fixed_z, **FIT, least_half_breadth=least, edge=border)
     return fit, not pointed
 
 
-def fit_topsides(table: HalfBreadths, main: NurbsSurface, draft: float) -> tuple[PatchFit, float]:
-    """Sides above the waterline over the main patch: from the table where it reaches higher, else upright walls."""
+def fit_topsides(
+    table: HalfBreadths, main: NurbsSurface, draft: float, neighbour: Array | None = None
+) -> tuple[PatchFit, float]:
+    """Sides above the waterline over one patch: from the table where it reaches higher, else upright walls.
+
+    Args:
+        table, draft: the hull.
+        main: the patch below, whose edge v = 1 the sides continue.
+        neighbour: control points of the edge at the patch's fore end, where another patch of sides begins.
+
+    Returns:
+        The fit and the height of the deck.
+    """
     station_map = StationMap(main.knots_u, main.control_points[:, 0, 0])
     knots = knots_at([0.25, 0.5, 0.75])
     fixed_y, fixed_z = free_net(station_map, knots)
@@ -288,6 +409,8 @@ def fit_topsides(table: HalfBreadths, main: NurbsSurface, draft: float) -> tuple
     for end in (0, -1):
         if np.all(main.control_points[end, :, 1] == 0.0):
             fixed_y[end] = 0.0
+    if neighbour is not None:
+        fixed_y[-1] = neighbour[:, 1]
     fit = fit_patch(sections, station_map, knots, fixed_y, fixed_z, smoothing=5e-3,
                     least_half_breadth=0.0, rounds=0)  # fmt: skip
     return fit, height
@@ -316,26 +439,36 @@ def parent_from_table(table: HalfBreadths, length: float, draft: float) -> Paren
         InputError: the table cannot be made into a hull.
     """
     try:
-        fits, girth, caps = fit_underwater(table, draft)
-        topsides, deck = fit_topsides(table, fits["main"].surface, draft)
+        under = fit_underwater(table, draft)
+        fits, girth, caps = under.fits, dict(under.girth), list(under.caps)
+        sides, deck = fit_topsides(table, fits["main"].surface, draft)
+        topsides = {"topsides": sides.surface}
+        along = {"topsides": "main"}
+        if "counter" in fits:
+            edge = sides.surface.control_points[0]
+            topsides["topsides_aft"] = fit_topsides(table, fits["counter"].surface, draft, edge)[0].surface
+            along["topsides_aft"] = "counter"
+            girth["topsides_aft"] = ("topsides", 0.0, 1.0)
     except (ValueError, np.linalg.LinAlgError) as problem:
         raise InputError(f"{table.name}: no smooth surface through these stations ({problem})") from problem
     main = fits["main"].surface
-    for end, row in (("first", 0), ("last", -1)):
-        if float(np.max(topsides.surface.control_points[row, :, 1])) > 1e-6 * length:
-            caps.append(("topsides", end))
+    aftmost = "topsides_aft" if "counter" in fits else "topsides"
+    for name, end, row in ((aftmost, "first", 0), ("topsides", "last", -1)):
+        if float(np.max(topsides[name].control_points[row, :, 1])) > 1e-6 * length:
+            caps.append((name, end))
     underwater = {name: fit.surface for name, fit in fits.items()}
     shaft = SHAFT_HEIGHT_TO_DRAFT * draft
-    boss = _boss(fits, shaft)
+    boss = _boss(fits, shaft) if "skeg" not in fits else float(fits["skeg"].surface.control_points[0, 0, 0])
     breadth = 2.0 * float(np.max(table.y[:, table.z <= draft * (1.0 + 1e-9)]))
-    first, last = float(main.control_points[0, 0, 0]), float(main.control_points[-1, 0, 0])
+    first = min(float(fit.surface.control_points[0, 0, 0]) for fit in fits.values())
+    last = float(main.control_points[-1, 0, 0])
     body = last - first
-    aft, forward = max(boss, first) + 0.025 * body, last - 0.02 * body
+    aft, forward = max(boss, float(main.control_points[0, 0, 0])) + 0.025 * body, last - 0.02 * body
     rough = ParentHull(
         name=table.name, length=length, breadth=breadth, draft=draft, deck_height=deck, shaft_height=shaft,
         boss_end_x=boss, shift_frame=ShiftFrame(aft, 0.5 * (aft + forward), forward, length),
-        underwater=underwater, topsides={"topsides": topsides.surface}, caps=tuple(caps),
-        girth=girth, along={"topsides": "main"}, source=f"fitted to {table.name}",
+        underwater=underwater, topsides=topsides, caps=tuple(caps),
+        girth=girth, along=along, source=f"fitted to {table.name}",
     )  # fmt: skip
     quadrature = rough.quadrature
     full = quadrature.curve_x[quadrature.curve_area > 0.995 * quadrature.largest_area]

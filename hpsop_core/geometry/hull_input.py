@@ -5,7 +5,6 @@ from __future__ import annotations
 import csv
 import math
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
@@ -212,7 +211,8 @@ def parent_hull_from_stl(path: Path | str, unit: str, draft: float, length: floa
             f"{path.name}: the mesh is {high[0] - low[0]:g} m long in unit '{unit}' but the length is {length:g} m"
         )
     x, z = _slice_axes(low, high, draft)
-    y = np.array([_half_breadths(mesh, float(station), z, draft, path.name) for station in x])
+    triangles = np.asarray(mesh.triangles, dtype=np.float64)
+    y = np.array([_half_breadths(triangles, float(station), z, draft, path.name) for station in x])
     _check_size(path.name, x, z, y, length, draft, {})
     return parent_from_table(HalfBreadths(path.name, x, z, y), length, draft)
 
@@ -228,18 +228,26 @@ def _slice_axes(low: Array, high: Array, draft: float) -> tuple[Array, Array]:
     return x, z
 
 
-def _half_breadths(mesh: object, x: float, z: Array, draft: float, name: str) -> Array:
-    """Half-breadths of one slice at heights z, 0 outside."""
-    from trimesh.intersections import mesh_plane
-
-    slicer: Any = mesh_plane
-    segments = slicer(mesh, plane_normal=[1.0, 0.0, 0.0], plane_origin=[x, 0.0, 0.0])
+def _half_breadths(triangles: Array, x: float, z: Array, draft: float, name: str) -> Array:
+    """Half-breadths of one slice of triangles (n, 3, 3) at heights z, 0 outside."""
+    along = triangles[:, :, 0] - x
+    cut = triangles[(np.min(along, axis=1) < 0.0) & (np.max(along, axis=1) >= 0.0)]
+    along = cut[:, :, 0] - x
+    ends = []
+    for a, b in ((0, 1), (1, 2), (2, 0)):
+        crosses = (along[:, a] < 0.0) != (along[:, b] < 0.0)
+        part = np.where(crosses, along[:, a] / np.where(crosses, along[:, a] - along[:, b], 1.0), np.nan)
+        ends.append(cut[:, a, 1:] + part[:, None] * (cut[:, b, 1:] - cut[:, a, 1:]))
+    # A plane cuts exactly two edges of a triangle; the third entry is NaN.
+    pairs = np.stack(ends, axis=1)
+    order = np.argsort(np.isnan(pairs[:, :, 0]), axis=1, kind="stable")[:, :2]
+    segments = np.take_along_axis(pairs, order[:, :, None], axis=1)
     result = np.zeros_like(z)
     if len(segments) == 0:
         return result
-    start, end = segments[:, 0, 1:], segments[:, 1, 1:]
+    start, end = segments[:, 0], segments[:, 1]
     # The lowest row stands for the flat of bottom and is read just above it.
-    reading = np.maximum(z, z[0] + 2e-4 * draft)
+    reading = np.maximum(z, z[0] + 1e-3 * draft)
     reading = np.where(z >= 0.999 * float(np.max(z)), float(np.max(z)) - 1e-5 * draft, reading)
     for k, height in enumerate(reading):
         crossing = (start[:, 1] <= height) != (end[:, 1] <= height)
@@ -250,7 +258,7 @@ def _half_breadths(mesh: object, x: float, z: Array, draft: float, name: str) ->
         port = np.sort(y[y > 1e-6 * draft])
         if len(port) == 0:
             continue
-        if len(port) > 1 and height <= draft and port[-1] - port[0] > 0.02 * draft:
+        if len(port) > 1 and z[0] + 0.01 * draft < height <= draft and port[-1] - port[0] > 0.02 * draft:
             raise InputError(
                 f"{name}: the section at x = {x:.4g} m crosses z = {height:.4g} m {len(port)} times on one side; "
                 "tunnels, twin skegs and crossing faces are not supported"

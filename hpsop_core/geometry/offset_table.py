@@ -11,7 +11,7 @@ from hpsop_core.geometry.nurbs import NurbsSurface
 from hpsop_core.typing_aliases import Array, IntArray
 
 # The row z = 0 stands for the flat of bottom; it is read just above the baseline, as a fraction of the draft.
-BOTTOM_READING = 1e-4
+BOTTOM_READING = 4e-4
 GIRTH_POINTS = 401
 
 
