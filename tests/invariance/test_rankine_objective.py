@@ -1,0 +1,123 @@
+"""The wave resistance as an objective: smooth, scale-free, the same bits, and ranked as on a finer mesh."""
+
+from __future__ import annotations
+
+import os
+import subprocess
+import sys
+
+import numpy as np
+import pytest
+from scipy.linalg import solve as dense_solve
+from scipy.stats import spearmanr
+
+from hpsop_core.geometry.hull import Hull, load_parent_hull
+from hpsop_core.geometry.panels import hull_panels
+from hpsop_core.hydro import rankine
+from hpsop_core.hydro.rankine_grid import surface_grid
+
+FROUDE_NUMBERS = (0.22, 0.27)
+
+
+def affine(length_to_breadth: float, breadth_to_draft: float, draft: float = 14.5) -> Hull:
+    """The parent scaled to these ratios."""
+    breadth = breadth_to_draft * draft
+    return load_parent_hull().transform(length_to_breadth * breadth, breadth, draft)
+
+
+def wave_resistances(hull: Hull, settings: rankine.RankineSettings | None = None) -> np.ndarray:
+    """Rw/(rho g) in m3 at both conditions; positive or a failure."""
+    result = rankine.solve(hull, FROUDE_NUMBERS, settings)
+    return np.array([c.wave_coefficient * 0.5 * c.froude_number**2 * hull.length for c in result.conditions]) * (
+        hull.hydrostatics.wetted_surface
+    )
+
+
+def cubic_residual(at: np.ndarray, values: np.ndarray) -> float:
+    """Largest relative distance from the least-squares cubic, over all columns."""
+    place = (at - at.mean()) / np.ptp(at)
+    worst = 0.0
+    for column in values.T:
+        fitted = np.polyval(np.polyfit(place, column, 3), place)
+        worst = max(worst, float(np.max(np.abs(fitted / column - 1.0))))
+    return worst
+
+
+@pytest.mark.parametrize(("name", "low", "high"), [("length_to_breadth", 6.5, 8.5), ("breadth_to_draft", 3.0, 4.5)])
+def test_smooth_over_the_ratios(name: str, low: float, high: float) -> None:
+    # 0.2 % about a cubic over the whole range is the issue's bound; 21 points here, 41 in `hpsop validate`.
+    at = np.linspace(low, high, 21)
+    ratios = {"length_to_breadth": 355.0 / 51.0, "breadth_to_draft": 51.0 / 14.5}
+    values = np.array([wave_resistances(affine(**{**ratios, name: value})) for value in at])
+    assert np.all(values > 0.0)
+    assert cubic_residual(at, values) < 2e-3
+
+
+@pytest.mark.parametrize("middle", [0.97, 1.03])
+def test_smooth_over_the_displacement_ratio(middle: float) -> None:
+    # The same 0.2 % about a cubic through eleven neighbours; the whole range has a hump.
+    parent = load_parent_hull()
+    volume = parent.hydrostatics.displaced_volume
+    at = middle + 0.0025 * np.arange(-5, 6)
+    hulls = [parent.transform(parent.length, parent.breadth, parent.draft, ratio * volume) for ratio in at]
+    assert cubic_residual(at, np.array([wave_resistances(hull) for hull in hulls])) < 2e-3
+
+
+def test_geometrically_similar_hulls_have_one_coefficient() -> None:
+    parent = load_parent_hull()
+    one = rankine.solve(parent.transform(355.0, 51.0, 14.5), FROUDE_NUMBERS)
+    half = rankine.solve(parent.transform(177.5, 25.5, 7.25), FROUDE_NUMBERS)
+    for large, small in zip(one.conditions, half.conditions, strict=True):
+        # Rounding, amplified by the condition number of 1e4.
+        assert small.wave_coefficient == pytest.approx(large.wave_coefficient, rel=1e-9)
+        assert 2.0 * small.sinkage == pytest.approx(large.sinkage, rel=1e-9)
+
+
+def test_conditions_do_not_know_of_each_other() -> None:
+    hull = affine(7.0, 3.5)
+    together = rankine.solve(hull, FROUDE_NUMBERS)
+    alone = rankine.solve(hull, FROUDE_NUMBERS[1:])
+    # Matrix products of another width may round differently.
+    assert together.conditions[1].wave_coefficient == pytest.approx(alone.conditions[0].wave_coefficient, rel=1e-10)
+
+
+PROGRAM = """
+from hpsop_core.geometry.hull import load_parent_hull
+from hpsop_core.hydro.rankine import solve
+result = solve(load_parent_hull().transform(340.0, 50.0, 14.2), (0.22, 0.27))
+print([(c.wave_coefficient.hex(), c.wave_coefficient_pressure.hex(), c.trim.hex()) for c in result.conditions])
+"""
+
+
+def test_same_bits_in_other_processes_and_with_other_thread_settings() -> None:
+    answers = set()
+    for threads in ("1", "2"):
+        environment = {**os.environ, "OPENBLAS_NUM_THREADS": threads, "OMP_NUM_THREADS": threads}
+        run = subprocess.run(
+            [sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True, check=True, timeout=120
+        )
+        answers.add(run.stdout)
+    assert len(answers) == 1
+
+
+@pytest.mark.parametrize("froude_number", FROUDE_NUMBERS)
+def test_single_precision_factor_is_not_felt(froude_number: float) -> None:
+    # Refinement against the double-precision matrix restores double precision: 1e-8 leaves room for a condition of 1e4.
+    hull = affine(355.0 / 51.0, 51.0 / 14.5)
+    settings = rankine.RankineSettings()
+    panels, waterline = rankine.solver_axes(hull_panels(hull, settings.hull_lengthwise, settings.hull_girthwise))
+    system = rankine.surface_system(rankine.double_body(panels), surface_grid(waterline, settings))
+    gravity = 1.0 / froude_number**2
+    ours = rankine.surface_strengths(system, gravity)
+    exact = dense_solve(system.convection + gravity * system.vertical, system.forcing)
+    assert np.max(np.abs(ours - exact)) < 1e-8 * np.max(np.abs(exact))
+
+
+def test_a_finer_mesh_ranks_designs_alike() -> None:
+    # Eight designs at the corners of the paper's bounds; `hpsop validate` ranks 30 and asks for .97 as well.
+    designs = [affine(a, b, d) for a in (6.5, 8.5) for b in (3.0, 4.5) for d in (14.0, 14.5)]
+    finer = rankine.RankineSettings().refined(1.3)
+    coarse = np.array([wave_resistances(hull) for hull in designs])
+    fine = np.array([wave_resistances(hull, finer) for hull in designs])
+    for condition in range(2):
+        assert spearmanr(coarse[:, condition], fine[:, condition])[0] >= 0.97
