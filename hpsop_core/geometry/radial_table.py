@@ -6,7 +6,7 @@ from dataclasses import dataclass, fields
 from functools import cached_property
 
 import numpy as np
-from scipy.interpolate import PchipInterpolator
+from scipy.interpolate import Akima1DInterpolator
 
 from hpsop_core.errors import InputError
 from hpsop_core.typing_aliases import Array
@@ -46,8 +46,9 @@ class BladeSections:
 class RadialTable:
     """A blade as rows over the radius, from the hub (first row) to the tip (last row, r/R = 1).
 
-    Between the rows every column is a monotone cubic (PCHIP) in sqrt(1 - r/R): the chord of a rounded tip goes to zero
-    like that root, so that it is smooth in this variable, and a monotone cubic cannot overshoot into a negative chord.
+    Between the rows every column is a modified Akima cubic in sqrt(1 - r/R): the chord of a rounded tip goes to zero
+    like that root, so that it is smooth in this variable; the cubic is local, hardly overshoots, and scales with its
+    data.
 
     Attributes:
         name: what the table is called.
@@ -102,10 +103,10 @@ class RadialTable:
         return float(self.radius_ratio[0])
 
     @cached_property
-    def _interpolant(self) -> PchipInterpolator:
+    def _interpolant(self) -> Akima1DInterpolator:
         abscissa = np.sqrt(np.maximum(1.0 - self.radius_ratio, 0.0))[::-1]
         columns = np.stack([getattr(self, name)[::-1] for name in _COLUMNS], axis=1)
-        return PchipInterpolator(abscissa, columns, axis=0, extrapolate=True)
+        return Akima1DInterpolator(abscissa, columns, axis=0, method="makima", extrapolate=True)
 
     def at(self, radius_ratio: Array) -> BladeSections:
         """The sections at ``radius_ratio`` (any shape), continued smoothly to 0.9 of the hub radius and held there."""
@@ -114,6 +115,7 @@ class RadialTable:
             self._interpolant(np.sqrt(1.0 - np.clip(radius, 0.9 * self.hub_ratio, 1.0))), dtype=np.float64
         )
         columns = {name: values[..., i] for i, name in enumerate(_COLUMNS)}
+        columns["chord_ratio"] = np.maximum(columns["chord_ratio"], 0.0)
         return BladeSections(radius_ratio=radius, **columns)
 
     @cached_property

@@ -1,0 +1,278 @@
+"""The propeller's pictures in docs/pictures.
+
+python -m hpsop_core.export.propeller_pictures --to docs/pictures
+"""
+
+from __future__ import annotations
+
+import argparse
+import sys
+from collections.abc import Sequence
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import trimesh
+
+from hpsop_core.errors import InputError
+from hpsop_core.geometry.hull import load_parent_hull
+from hpsop_core.geometry.hull_mesh import hull_mesh
+from hpsop_core.geometry.propeller import Propeller, load_propeller, propeller_family
+from hpsop_core.geometry.propeller_clearance import propeller_clearance, propeller_placement
+from hpsop_core.geometry.propeller_mesh import propeller_mesh
+from hpsop_core.geometry.propeller_sections import cosine_chord_fractions
+from hpsop_core.geometry.propeller_surface import section_points
+from hpsop_core.hydro import lifting_line
+from hpsop_core.hydro.section_drag import SectionDrag
+from hpsop_core.typing_aliases import Array
+from hpsop_core.validation.propeller_level1 import MODEL_DIAMETER, reference_rows
+
+_BRONZE = (0.83, 0.62, 0.28)
+_PAINT = (0.62, 0.28, 0.25)
+_STERN_LIGHT = (-0.4, 0.8, 0.45)
+_DPI = 110
+
+
+def _pyplot() -> Any:
+    try:
+        import matplotlib
+    except ImportError as error:
+        raise InputError("pictures need matplotlib; install hpsop with the extra 'pictures'") from error
+    matplotlib.use("Agg")
+    from matplotlib import pyplot
+
+    return pyplot
+
+
+def _shaded(
+    axes: Any,
+    triangles: Array,
+    normals: Array,
+    colour: Sequence[float],
+    toward_light: Sequence[float] = (0.55, 0.25, 0.8),
+    zorder: int = 1,
+) -> None:
+    """Add flat-shaded triangles to a 3D drawing."""
+    from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
+
+    light = np.array(toward_light) / np.linalg.norm(toward_light)
+    shade = 0.62 + 0.38 * (normals @ light)
+    colours = np.clip(shade[:, None] * np.array(colour), 0.0, 1.0)
+    axes.add_collection3d(
+        Poly3DCollection(triangles, facecolors=colours, edgecolors=colours, linewidths=0.3, zorder=zorder)
+    )
+
+
+def _bare(axes: Any, low: Array, high: Array) -> None:
+    for name, a, b in zip("xyz", low, high, strict=True):
+        getattr(axes, f"set_{name}lim")(a, b)
+    axes.set_box_aspect(high - low)
+    axes.set_axis_off()
+
+
+def family_picture(file: Path) -> None:
+    """Members of the family, seen from astern and to one side."""
+    pyplot = _pyplot()
+    parent = load_propeller()
+    members = [
+        ("parent: Z 3, EAR 0.607", propeller_family(parent, 2.0, 3)),
+        ("Z 4, EAR 0.607", propeller_family(parent, 2.0, 4)),
+        ("Z 5, EAR 0.607", propeller_family(parent, 2.0, 5)),
+        ("Z 7, EAR 0.607", propeller_family(parent, 2.0, 7)),
+        ("Z 3, EAR 1.0", propeller_family(parent, 2.0, 3, 1.0, 1.0)),
+        ("Z 5, EAR 1.0", propeller_family(parent, 2.0, 5, 1.05, 1.0)),
+    ]
+    figure = pyplot.figure(figsize=(11.0, 7.4))
+    for place, (title, propeller) in enumerate(members, start=1):
+        axes = figure.add_subplot(2, 3, place, projection="3d", proj_type="ortho")
+        mesh = propeller_mesh(propeller, "view")
+        _shaded(axes, mesh.triangles, mesh.face_normals, _BRONZE)
+        _bare(axes, np.full(3, -0.78), np.full(3, 0.78))
+        axes.view_init(18.0, 38.0)
+        axes.set_title(title, fontsize=11, y=0.94)
+    figure.subplots_adjust(0.0, 0.0, 1.0, 0.95, 0.0, 0.02)
+    figure.savefig(file, dpi=80, bbox_inches="tight")
+    pyplot.close(figure)
+
+
+def sections_picture(file: Path) -> None:
+    """Expanded outline of P4119 with its sections, and what the rows of the table hold."""
+    pyplot = _pyplot()
+    parent = load_propeller()
+    figure, (left, right) = pyplot.subplots(1, 2, figsize=(11.0, 5.2), width_ratios=[1.5, 1.0])
+    radii = np.linspace(0.2, 1.0, 400)
+    chord = 2.0 * parent.at(radii).chord_ratio
+    left.plot(-0.5 * chord, radii, "k", lw=1.0)
+    left.plot(0.5 * chord, radii, "k", lw=1.0)
+    shown = np.array([0.2, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95])
+    sections = parent.at(shown)
+    fractions = cosine_chord_fractions(80)
+    for side in (True, False):
+        along, across = section_points(sections, fractions, side)
+        for k, radius in enumerate(shown):
+            left.plot(along[k], radius + across[k], color="#a06010", lw=0.9)
+    left.set_aspect("equal")
+    left.set_xlabel("from mid-chord towards the trailing edge, in R")
+    left.set_ylabel("r/R (sections stand on their radius)")
+    left.set_title("P4119: expanded outline and sections", fontsize=11)
+    table = parent.at(radii)
+    for values, name in (
+        (table.chord_ratio, "c/D"),
+        (table.pitch_ratio / 2.0, "P/D / 2"),
+        (5.0 * table.camber_ratio, "5 f/c"),
+        (table.thickness_ratio, "t/c"),
+    ):
+        right.plot(radii, values, label=name)
+    right.plot(parent.radius_ratio, parent.chord_ratio, "k.", ms=4)
+    right.set_xlabel("r/R")
+    right.legend(frameon=False)
+    right.grid(alpha=0.3)
+    right.set_title("between the rows (dots: rows of c/D)", fontsize=11)
+    figure.tight_layout()
+    figure.savefig(file, dpi=_DPI)
+    pyplot.close(figure)
+
+
+def open_water_picture(file: Path) -> None:
+    """Level 1 beside the experiment and PROPAN, at model scale."""
+    pyplot = _pyplot()
+    model = propeller_family(load_propeller(), MODEL_DIAMETER, 3)
+    advance = np.linspace(0.1, 1.15, 85)
+    prepared = lifting_line.prepare(model)
+    viscous = prepared.solve(advance, SectionDrag.model_scale(10.0, 1e-6))
+    inviscid = prepared.solve(advance, SectionDrag.inviscid())
+    figure, axes = pyplot.subplots(figsize=(8.0, 5.6))
+    colours = {"KT": "#1f4e9c", "10KQ": "#b03020", "eta": "#207040"}
+    efficiency = viscous.open_water_efficiency
+    axes.plot(advance, viscous.thrust_coefficient, color=colours["KT"], label="KT, level 1")
+    axes.plot(advance, 10.0 * viscous.torque_coefficient, color=colours["10KQ"], label="10 KQ, level 1")
+    axes.plot(
+        advance, np.where(efficiency > 0.0, efficiency, np.nan), color=colours["eta"], label="efficiency, level 1"
+    )
+    axes.plot(
+        advance, inviscid.thrust_coefficient, ":", color=colours["KT"], lw=1.0, label="KT, 10 KQ without viscosity"
+    )
+    axes.plot(advance, 10.0 * inviscid.torque_coefficient, ":", color=colours["10KQ"], lw=1.0)
+    for name, marker in (("A", "o"), ("B", "s")):
+        rows = [row for row in reference_rows("p4119_openwater.csv") if row["set"] == name]
+        j, kt, kq = (np.array([float(row[key]) for row in rows]) for key in ("J", "KT", "10KQ"))
+        fill = "none" if name == "B" else None
+        axes.plot(j, kt, marker, color=colours["KT"], mfc=fill, ls="", label=f"experiment, set {name}")
+        axes.plot(j, kq, marker, color=colours["10KQ"], mfc=fill, ls="")
+        axes.plot(j, j * kt / (2.0 * np.pi * 0.1 * kq), marker, color=colours["eta"], mfc=fill, ls="")
+    rows = list(reference_rows("p4119_propan.csv"))
+    j, kt, kq = (np.array([float(row[key]) for row in rows]) for key in ("J", "KT_blade_inv", "10KQ_blade_inv"))
+    axes.plot(j, kt, "+", color=colours["KT"], label="PROPAN without viscosity")
+    axes.plot(j, kq, "+", color=colours["10KQ"])
+    axes.set_xlim(0.1, 1.15)
+    axes.set_ylim(0.0, 0.85)
+    axes.set_xlabel("advance coefficient J")
+    axes.grid(alpha=0.3)
+    axes.legend(frameon=False, fontsize=9, ncols=2, loc="upper left")
+    axes.set_title("P4119 in open water, D = 0.3048 m, n = 10 1/s", fontsize=11)
+    figure.tight_layout()
+    figure.savefig(file, dpi=_DPI)
+    pyplot.close(figure)
+
+
+def loading_picture(file: Path) -> None:
+    """Circulation, inflow and the drag's excess along the blade at four advance coefficients."""
+    pyplot = _pyplot()
+    model = propeller_family(load_propeller(), MODEL_DIAMETER, 3)
+    advance = np.array([0.5, 0.7, 0.833, 0.9])
+    state = lifting_line.prepare(model).state(advance, SectionDrag.model_scale(10.0, 1e-6))
+    figure, axes = pyplot.subplots(1, 3, figsize=(12.0, 4.2))
+    hydrodynamic = (2.0 * advance[:, None] + state.axial_velocity) / (
+        2.0 * np.pi * state.radius_ratio - state.tangential_velocity
+    )
+    pitch = np.pi * state.radius_ratio * hydrodynamic
+    for k, j in enumerate(advance):
+        (line,) = axes[0].plot(
+            state.radius_ratio,
+            state.circulation[k] / (2.0 * np.pi * np.hypot(2.0 * j, 0.7 * 2.0 * np.pi)),
+            ".-",
+            label=f"J = {j:g}",
+        )
+        axes[1].plot(state.radius_ratio, pitch[k], ".-", color=line.get_color())
+        axes[1].axhline(
+            state.wake_pitch_ratio[k] * model.pitch_diameter_ratio_07R, color=line.get_color(), lw=0.7, ls="--"
+        )
+        axes[2].plot(state.radius_ratio, state.lift_excess[k], ".-", color=line.get_color())
+    axes[0].set_title("circulation / (2 pi R V at 0.7 R)", fontsize=10)
+    axes[0].legend(frameon=False)
+    axes[1].set_title("hydrodynamic pitch/D (dashed: the wake's)", fontsize=10)
+    axes[2].set_title("2 pi (alpha - alpha ideal)", fontsize=10)
+    for one in axes:
+        one.set_xlabel("r/R")
+        one.grid(alpha=0.3)
+        one.set_ylim(bottom=min(0.0, one.get_ylim()[0]))
+    axes[1].set_ylim(0.6, 1.2)
+    figure.tight_layout()
+    figure.savefig(file, dpi=_DPI)
+    pyplot.close(figure)
+
+
+def _behind_hull(axes: Any, propeller: Propeller) -> float:
+    """Draw stern and propeller, return the tip clearance."""
+    hull = load_parent_hull().transform(355.0, 51.0, 14.5)
+    ship = hull_mesh(hull, "export")
+    corners = ship.triangles
+    near = (corners[..., 0].min(axis=1) < 24.0) & (corners[..., 2].min(axis=1) < 16.0)
+    # faces across the picture's edge are squeezed on it
+    cut = np.minimum(corners[near], np.array([24.0, np.inf, 16.0]))
+    _shaded(axes, cut, ship.face_normals[near], _PAINT, _STERN_LIGHT)
+    screw: trimesh.Trimesh = propeller_mesh(propeller, "view")
+    screw.apply_transform(propeller_placement(hull, propeller))
+    _shaded(axes, screw.triangles, screw.face_normals, _BRONZE, _STERN_LIGHT, 2)
+    return propeller_clearance(hull, propeller)
+
+
+def aperture_picture(file: Path) -> None:
+    """The parent propeller in the aperture, from the side and from astern."""
+    pyplot = _pyplot()
+    from matplotlib.transforms import Bbox
+
+    propeller = propeller_family(load_propeller(), 9.0, 3)
+    figure = pyplot.figure(figsize=(12.0, 5.2))
+    for left, elevation, azimuth, title in (
+        (-0.06, 0.0, 90.0, "from port"),
+        (0.46, 8.0, 148.0, "from astern and port"),
+    ):
+        axes = figure.add_axes((left, -0.12, 0.62, 1.2), projection="3d", proj_type="ortho")
+        # the propeller stands before the hull in both views; sorted by their middles they would not
+        axes.computed_zorder = False
+        clearance = _behind_hull(axes, propeller)
+        _bare(axes, np.array([-7.0, -10.0, 0.0]), np.array([24.0, 10.0, 16.0]))
+        axes.view_init(elevation, azimuth)
+        axes.set_title(f"{title}; D 9 m, tip clearance {clearance:.2f} m", fontsize=10, y=0.84)
+    # 3D axes keep wide margins: store the part of the sheet that holds something
+    figure.savefig(file, dpi=90, bbox_inches=Bbox([[0.3, 1.1], [12.0, 4.9]]))
+    pyplot.close(figure)
+
+
+PICTURES = {
+    "propeller-family.png": family_picture,
+    "propeller-sections.png": sections_picture,
+    "propeller-open-water.png": open_water_picture,
+    "propeller-loading.png": loading_picture,
+    "propeller-aperture.png": aperture_picture,
+}
+
+
+def main(arguments: Sequence[str] | None = None) -> int:
+    """Write every picture into a folder."""
+    parser = argparse.ArgumentParser(description="Write the propeller's pictures.")
+    parser.add_argument("--to", required=True, type=Path, help="folder for the PNG files")
+    folder: Path = parser.parse_args(arguments).to
+    try:
+        folder.mkdir(parents=True, exist_ok=True)
+        for name, draw in PICTURES.items():
+            draw(folder / name)
+    except (InputError, OSError) as error:
+        sys.stderr.write(f"{error}\n")
+        return 2
+    return 0
+
+
+if __name__ == "__main__":
+    sys.exit(main())
