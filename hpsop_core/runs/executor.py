@@ -10,6 +10,7 @@ import multiprocessing.forkserver
 import multiprocessing.resource_tracker
 import os
 import signal
+import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Executor, Future, ProcessPoolExecutor
 from typing import Any, Protocol
@@ -18,6 +19,7 @@ from hpsop_core.errors import InputError
 from hpsop_core.runs.tasks import start_worker, warm_up_task
 
 _START_LIMIT = 120.0  # seconds for all workers of a pool to import what they need
+_CLUSTER_INTERVAL = 2.0  # seconds between looks at how many threads a cluster has
 _THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 
 
@@ -171,13 +173,18 @@ class DaskWorkers:
                 f"--executor dask:{address}: no scheduler with workers answers there "
                 f"({error or type(error).__name__}); start 'dask scheduler' and 'dask worker'"
             ) from error
+        self._asked, self._threads = float("-inf"), 1
         # A task that kills its worker is not tried on every worker in turn: the run decides about a second try.
         self._executor: Executor = self._client.get_executor(retries=0)
 
     @property
     def slots(self) -> int:
-        """Threads of all workers."""
-        return max(1, int(sum(self._client.nthreads().values())))
+        """Threads of all workers; they may come and go."""
+        now = time.monotonic()
+        if now - self._asked > _CLUSTER_INTERVAL:
+            self._asked = now
+            self._threads = max(1, int(sum(self._client.nthreads().values())))
+        return self._threads
 
     @property
     def description(self) -> str:
@@ -202,7 +209,7 @@ class DaskWorkers:
 
     def close(self) -> None:
         """Leave the cluster; what still runs there is cancelled."""
-        self._executor.shutdown(wait=False, cancel_futures=True)
+        self._executor.shutdown(wait=False)
         self._client.close(timeout=5)
 
 

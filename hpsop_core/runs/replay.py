@@ -31,6 +31,7 @@ _EVENT_INTERVAL = 0.1  # seconds between events about progress within a generati
 _RETRY_INTERVAL = 1.0  # seconds between tries to write to a full disk
 _RECENT = 10  # generations that the estimate of the time left looks back on
 _LEVELS = (1, 2)
+_LEVEL2_SECONDS = 0.7  # an evaluation at level 2, until one is measured: the initial design's finds its hull remembered
 
 _T = TypeVar("_T")
 
@@ -423,9 +424,10 @@ class RunDriver:
         return seconds
 
     def _level2_estimate(self) -> float | None:
-        """Seconds a generation at level 2, from the initial design's evaluation there."""
+        """Seconds a generation at level 2, before there is one."""
         if self._level2_seconds is None and self._workers is not None:
             elapsed = self._store.elapsed_of(2)
             if elapsed is not None:
-                self._level2_seconds = elapsed * self._case.optimization.population / self._workers.slots
+                typical = max(elapsed, _LEVEL2_SECONDS)
+                self._level2_seconds = typical * self._case.optimization.population / self._workers.slots
         return self._level2_seconds
