@@ -19,6 +19,12 @@ from hpsop_core.typing_aliases import Array
 END_CLUSTERING = 0.6
 FEWEST_PANELS = 4
 WATERLINE_POINTS = 801
+# A part whose upper edge is submerged stays this far below the waterline, in drafts: its panels must not meet their
+# own images. (The reference ship's bulb is 0.8 % below.)
+CROWN_COVER = 0.005
+# A wet transom is closed by a tail of this many half-breadths, ending no further aft of AP than a part of the length.
+TAIL_SLENDERNESS, TAIL_REACH = 6.0, 0.1
+TAIL_PANELS = 8
 
 
 @dataclass(frozen=True, eq=False)
@@ -34,6 +40,8 @@ class HullPanels:
         wetted_surface: both sides, m2; resistance coefficients refer to it.
         displaced_volume: both sides, m3.
         vertical_centre_of_buoyancy: m above z = 0.
+        tail_panels: how many of the last ``quads`` are no hull but the closure behind a wet transom.
+        warnings: one line each.
     """
 
     quads: Array
@@ -44,6 +52,8 @@ class HullPanels:
     wetted_surface: float
     displaced_volume: float
     vertical_centre_of_buoyancy: float
+    tail_panels: int = 0
+    warnings: tuple[str, ...] = ()
 
 
 def grid_quads(points: Array) -> Array:
@@ -81,14 +91,43 @@ def _divisions(hull: Hull, name: str, lengthwise: int, girthwise: int) -> tuple[
     return u, np.linspace(0.0, 1.0, across + 1)
 
 
-def _cap_quads(edge: Array) -> Array:
-    """Panels that close a flat open end: from the edge curve (n, 3) to the centreplane at the same height."""
+def _cap_quads(edge: Array, end: str) -> Array:
+    """Panels that close a flat open end: from the edge curve (n, 3) to the centreplane at the same height.
+
+    Panels without area, where the edge itself lies in the centreplane, are left out.
+    """
     centreline = edge * np.array([1.0, 0.0, 1.0])
-    return grid_quads(np.stack([centreline, edge], axis=0))
+    ends = (centreline, edge) if end == "first" else (edge, centreline)
+    quads = grid_quads(np.stack(ends, axis=0))
+    breadth = np.abs(quads[:, :, 1]).max(axis=1)
+    solid: Array = quads[breadth > 1e-9 * float(np.ptp(edge[:, 2]) + np.max(edge[:, 1]))]
+    return solid
+
+
+def _tail_points(edge: Array, draft: float, length: float) -> Array:
+    """The closure behind a wet transom: its section shrinks like 1 - s^2 towards a point in the waterline.
+
+    Args:
+        edge: (n, 3) the transom's section from keel to waterline.
+        draft, length: of the hull, m.
+
+    Returns:
+        (TAIL_PANELS + 1, n, 3), from the point forward to the transom.
+    """
+    reach = max(min(TAIL_SLENDERNESS * float(edge[-1, 1]), float(edge[-1, 0]) + TAIL_REACH * length), 1e-3 * length)
+    s = np.linspace(1.0, 0.0, TAIL_PANELS + 1)[:, None]
+    shrink = 1.0 - s**2
+    return np.stack(
+        [edge[:, 0] - reach * s, edge[:, 1] * shrink, draft - (draft - edge[:, 2]) * shrink],
+        axis=2,
+    )
 
 
 def hull_panels(hull: Hull, lengthwise: int, girthwise: int) -> HullPanels:
     """Panels of a hull's underwater patches.
+
+    Flat ends (a boss, a blunt nose) are closed by flat panels. A wet transom, whose flow leaves the hull at its edge,
+    is closed by a short tail that carries on the waterline; the tail is no part of the hull's wetted surface.
 
     Args:
         hull: the hull.
@@ -97,24 +136,48 @@ def hull_panels(hull: Hull, lengthwise: int, girthwise: int) -> HullPanels:
     """
     quads: list[Array] = []
     blocks: list[tuple[str, int, int]] = []
+    tail: Array | None = None
+    waterline = hull.waterline(WATERLINE_POINTS)
     for name in hull.parent.underwater:
         u, v = _divisions(hull, name, lengthwise, girthwise)
-        points = hull.patch_points(name, u, v)
+        points = np.array(hull.patch_points(name, u, v))
+        if np.max(points[:, -1, 1]) == 0.0:
+            points[..., 2] = np.minimum(points[..., 2], (1.0 - CROWN_COVER) * hull.draft)
         quads.append(grid_quads(points))
         blocks.append((name, len(u) - 1, len(v) - 1))
-        if (name, "first") in hull.parent.caps:
-            quads.append(_cap_quads(points[0]))
-            blocks.append((f"{name} end", 1, len(v) - 1))
+        for end, edge in (("first", points[0]), ("last", points[-1])):
+            if (name, end) not in hull.parent.caps:
+                continue
+            if end == "first" and edge[-1, 1] > 0.0 and edge[-1, 2] >= (1.0 - 1e-9) * hull.draft:
+                tail = _tail_points(edge, hull.draft, hull.length)
+            else:
+                cap = _cap_quads(edge, end)
+                quads.append(cap)
+                blocks.append((f"{name} end", 1, len(cap)))
+    warnings: tuple[str, ...] = ()
+    if tail is not None:
+        quads.append(grid_quads(tail))
+        blocks.append(("tail", tail.shape[0] - 1, tail.shape[1] - 1))
+        fine = np.linspace(1.0, 0.0, 41)[:-1]
+        start, stop = tail[-1, -1], tail[0, -1]
+        aft = np.stack([start[0] + (stop[0] - start[0]) * fine, start[1] * (1.0 - fine**2)], axis=1)
+        waterline = np.concatenate([aft, waterline])
+        warnings = (
+            f"wet transom {2 * start[1]:.4g} m wide and {hull.draft - tail[-1, 0, 2]:.4g} m deep: closed by a tail of "
+            f"{start[0] - stop[0]:.4g} m in the wave calculation; the resistance of the transom itself is not included",
+        )
     measured = hull.hydrostatics
     return HullPanels(
         quads=np.concatenate(quads),
         blocks=tuple(blocks),
-        waterline=hull.waterline(WATERLINE_POINTS),
+        waterline=waterline,
         length=hull.length,
         draft=hull.draft,
         wetted_surface=measured.wetted_surface,
         displaced_volume=measured.displaced_volume,
         vertical_centre_of_buoyancy=measured.vertical_centre_of_buoyancy,
+        tail_panels=0 if tail is None else (tail.shape[0] - 1) * (tail.shape[1] - 1),
+        warnings=warnings,
     )
 
 

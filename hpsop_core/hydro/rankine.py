@@ -307,13 +307,15 @@ def _solve(body: HullPanels, numbers: tuple[float, ...], settings: RankineSettin
         for hull, surface in zip(base.velocities, system.on_hull, strict=True)
     ]
     along = system.along @ on_surface
+    # The tail behind a wet transom is no part of the hull.
+    wet = (np.arange(panels.count) < panels.count - body.tail_panels).astype(np.float64)
     conditions = []
     for k, number in enumerate(numbers):
         flow = base.flow + np.stack([component[:, k] for component in disturbance], axis=1)
         pressure = 1.0 - np.sum(flow**2, axis=1)
-        by_pressure = pressure_force(pressure - base.pressure_coefficient, panels)[0] * 2.0 / reference
+        by_pressure = pressure_force((pressure - base.pressure_coefficient) * wet, panels)[0] * 2.0 / reference
         elevation = 0.5 * number**2 * (1.0 - system.flow_square - 2.0 * along[:, k]) * body.length
-        sinkage, trim = sinkage_and_trim(pressure, panels, waterline, float(gravity[k]))
+        sinkage, trim = sinkage_and_trim(pressure * wet, panels, waterline, float(gravity[k]))
         shown = _fields(body, grid, elevation, pressure) if fields else None
         condition = RankineCondition(
             froude_number=number,
@@ -332,7 +334,7 @@ def _solve(body: HullPanels, numbers: tuple[float, ...], settings: RankineSettin
         conditions=tuple(conditions),
         double_body_drag=drag,
         unknowns=panels.count + len(grid.area),
-        warnings=_warnings(numbers, settings),
+        warnings=body.warnings + _warnings(numbers, settings),
         settings=settings,
     )
 
