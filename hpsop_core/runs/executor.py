@@ -166,7 +166,7 @@ class DaskWorkers:
         self._address = address
         target = address if "://" in address else f"tcp://{address}"
         try:
-            self._client: Any = client(target, timeout=10, set_as_default=False)
+            self._client: Any = client(target, timeout=5, set_as_default=False)
             self._client.wait_for_workers(1, timeout=30)
         except (OSError, TimeoutError, ValueError) as error:
             raise WorkersUnavailableError(

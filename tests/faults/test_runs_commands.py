@@ -1,0 +1,175 @@
+"""``hpsop optimize`` and ``hpsop show`` from end to end, on the real hydrodynamics of level 1."""
+
+from __future__ import annotations
+
+import json
+import os
+import pty
+import signal
+import subprocess
+import sys
+import time
+from itertools import pairwise
+from pathlib import Path
+
+import pytest
+from run_files import content
+
+from hpsop_core.cli import main
+
+RUN = "run.hpsop"
+VARIABLES = [
+    "length_to_breadth",
+    "breadth_to_draft",
+    "draft",
+    "diameter",
+    "blade_count",
+    "pitch_ratio",
+    "displacement_ratio",
+    "expanded_area_ratio",
+    "buoyancy_centre_shift",
+]
+
+
+def command(*words: str) -> list[str]:
+    return [sys.executable, "-m", "hpsop_core.cli", *words]
+
+
+def hpsop(*words: str, folder: Path) -> subprocess.CompletedProcess[str]:
+    root = str(Path(__file__).resolve().parents[2])
+    environment = {**os.environ, "PYTHONPATH": root}
+    return subprocess.run(
+        command(*words), check=False, capture_output=True, text=True, cwd=folder, env=environment, timeout=240
+    )
+
+
+@pytest.fixture(scope="module")
+def folder(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    """A folder with a finished run of level 1."""
+    folder = tmp_path_factory.mktemp("commands")
+    plan = ("--generations", "4", "--level1-generations", "4", "--population", "8", "--seed", "3", "--workers", "2")
+    ended = hpsop("optimize", "dtc-p4119-paper", "--run", RUN, *plan, folder=folder)
+    assert ended.returncode == 0, ended.stderr
+    lines = ended.stderr.splitlines()
+    assert lines[0] == f"dtc-p4119-paper: 4 generations of 8, 4 of them at level 1; seed 3; {RUN}"
+    assert [line.split(",")[0] for line in lines if line.startswith("generation")] == [
+        f"generation {number}/4" for number in range(1, 5)
+    ]
+    assert "\r" not in ended.stderr and "front:" in ended.stdout
+    return folder
+
+
+def test_show_front_has_the_shape_of_the_contract(folder: Path) -> None:
+    ended = hpsop("show", RUN, "--front", "--json", folder=folder)
+    assert ended.returncode == 0 and ended.stderr == ""
+    document = json.loads(ended.stdout)
+    assert document["generation"] == 4 and document["level"] == 1
+    assert {"generation", "level", "designs", "compromise", "initial"} <= document.keys()
+    for design in [*document["designs"], document["initial"]]:
+        assert list(design) == ["id", "objectives", "variables", "feasible"]
+        assert type(design["id"]) is int and list(design["variables"]) == VARIABLES
+        assert set(design["objectives"]) == {"f1", "f2"}
+    assert document["compromise"] in [design["id"] for design in document["designs"]]
+    assert all(design["feasible"] for design in document["designs"])
+    # 1 but for the rounding of a sum of two weighted ratios that are 1.
+    assert document["initial"]["objectives"]["f1"] == pytest.approx(1.0, abs=1e-12)
+    points = [tuple(design["objectives"].values()) for design in document["designs"]]
+    assert points == sorted(points) and all(a[1] > b[1] for a, b in pairwise(points))
+
+
+def test_show_one_design_is_the_json_of_evaluate(folder: Path) -> None:
+    compromise = json.loads(hpsop("show", RUN, "--design", "compromise", "--json", folder=folder).stdout)
+    by_id = json.loads(hpsop("show", RUN, "--design", str(compromise["id"]), "--json", folder=folder).stdout)
+    assert by_id == compromise
+    changes = [f"{name}={value!r}" for name, value in compromise["variables"].items()]
+    ended = hpsop("evaluate", "dtc-p4119-paper", "--set", *changes, "--json", folder=folder)
+    evaluated = json.loads(ended.stdout)
+    assert evaluated.keys() <= compromise.keys()
+    # The run's case differs in its [optimization] alone: the same code on the same numbers.
+    for key in ("variables", "hull", "propeller", "conditions", "objectives", "constraints", "feasible", "open_water"):
+        assert evaluated[key] == compromise[key], key
+    initial = json.loads(hpsop("show", RUN, "--design", "initial", "--json", folder=folder).stdout)
+    assert initial["id"] == 1 and initial["variables"]["blade_count"] == 3
+
+
+def test_show_summary_generation_and_texts(folder: Path) -> None:
+    summary = json.loads(hpsop("show", RUN, "--json", folder=folder).stdout)
+    assert summary["state"] == "finished" and summary["generation"] == 4 and summary["seed"] == 3
+    assert summary["evaluations"]["2"]["count"] == 1, "the initial design, at level 2 too"
+    second = json.loads(hpsop("show", RUN, "--generation", "2", "--json", folder=folder).stdout)
+    assert second["number"] == 2 and len(second["designs"]) == 8
+    for words in ((), ("--front",), ("--generation", "1"), ("--design", "knee"), ("--design", "2")):
+        ended = hpsop("show", RUN, *words, folder=folder)
+        assert ended.returncode == 0 and len(ended.stdout.splitlines()) > 3, ended.stderr
+
+
+@pytest.mark.parametrize(
+    ("words", "expected"),
+    [
+        (("show", "nowhere.hpsop"), "no such run file"),
+        (("show", RUN, "--design", "9999"), "has no design 9999"),
+        (("show", RUN, "--design", "best"), "give a design's number"),
+        (("show", RUN, "--generation", "5"), "has generations 1 to 4"),
+        (("show", RUN, "--front", "--design", "1"), "ask one of them"),
+        (("optimize", "dtc-p4119", "--run", RUN), "holds a run of the case 'dtc-p4119-paper'"),
+        (("optimize", "dtc-p4119-paper", "--run", RUN, "--seed", "4"), "seed = 3"),
+        (("optimize", "dtc-p4119-paper", "--run", RUN, "--generations", "3"), "as many or more"),
+        (("optimize", "dtc-p4119-paper", "--run", "x/y.hpsop"), "folder cannot be written"),
+        (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--population", "1"), "population"),
+        (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--workers", "0"), "--workers 0"),
+        (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--generations", "many"), "--generations"),
+        (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--executor", "dask"), "local or dask:HOST:PORT"),
+        (("optimize", "dtc-p4119-paper"), "--run"),
+    ],
+)
+def test_mistakes_are_one_line(
+    words: tuple[str, ...],
+    expected: str,
+    folder: Path,
+    monkeypatch: pytest.MonkeyPatch,
+    capsys: pytest.CaptureFixture[str],
+) -> None:
+    monkeypatch.chdir(folder)
+    try:
+        code = main(words)
+    except SystemExit as end:
+        code = end.code
+    printed = capsys.readouterr()
+    assert code == 2 and printed.out == ""
+    assert len(printed.err.splitlines()) == 1 and expected in printed.err
+    assert not Path("new.hpsop").exists()
+
+
+def test_an_interrupt_pauses_cleanly_and_says_how_to_go_on(folder: Path, tmp_path: Path) -> None:
+    """On a terminal, by Ctrl-C: the bar is drawn, the signal reaches the whole process group."""
+    plan = ["--generations", "4", "--level1-generations", "4", "--population", "12", "--workers", "2"]
+    words = ["optimize", "dtc-p4119-paper", "--run", "int.hpsop", *plan]
+    ours, theirs = pty.openpty()
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[2])}
+    process = subprocess.Popen(
+        command(*words), stderr=theirs, stdout=theirs, cwd=tmp_path, env=environment, start_new_session=True
+    )
+    os.close(theirs)
+    seen = b""
+    while b"generation 2/4" not in seen:
+        seen += os.read(ours, 4096)
+    os.killpg(process.pid, signal.SIGINT)
+    asked = time.monotonic()
+    rest = b""
+    while True:
+        try:
+            part = os.read(ours, 4096)
+        except OSError:
+            break
+        rest += part
+    assert process.wait(timeout=30) == 130
+    # One evaluation of level 1 and the end of two processes, on a loaded machine.
+    assert time.monotonic() - asked < 5.0
+    text = rest.decode()
+    assert "Go on with: hpsop optimize dtc-p4119-paper --run int.hpsop" in text and "Traceback" not in text
+    assert b"\r[#" in seen or b"[..." in seen
+    ended = hpsop(*words[:4], "--workers", "2", folder=tmp_path)
+    assert ended.returncode == 0, ended.stderr
+    whole = hpsop(*words[:3], "whole.hpsop", *plan, folder=tmp_path)
+    assert whole.returncode == 0, whole.stderr
+    assert content(tmp_path / "int.hpsop") == content(tmp_path / "whole.hpsop")
