@@ -119,6 +119,12 @@ def _check_size(
     def row_of(k: int) -> str:
         return f" row {where[float(x[k])]}" if float(x[k]) in where else ""
 
+    whole = float(x[-1] - x[0])
+    if not 0.5 * length < whole < 2.0 * length:
+        raise InputError(
+            f"{name}{row_of(len(x) - 1)}: the stations span {whole:g} m but the length is {length:g} m; the table must be "
+            "in metres (no millimetres or feet) and is never scaled"
+        )
     if draft > z[-1] * (1.0 + 1e-9):
         raise InputError(f"{name}: the draft {draft:g} m is above the highest waterline {z[-1]:g} m of the table")
     wet = y[:, z <= draft]
@@ -129,7 +135,7 @@ def _check_size(
     if not 0.75 * length < span < 1.35 * length:
         raise InputError(
             f"{name}{row_of(int(in_water[-1]))}: the stations in the water span {span:g} m but the length is "
-            f"{length:g} m; the table must be in metres (no millimetres or feet) and is never scaled"
+            f"{length:g} m; the table must be in metres and is never scaled: is the draft right?"
         )
     widest = int(np.argmax(np.max(wet, axis=1)))
     half = float(np.max(wet))
@@ -204,12 +210,12 @@ def parent_hull_from_stl(path: Path | str, unit: str, draft: float, length: floa
     low, high = mesh.bounds
     if abs(low[1] + high[1]) > 0.02 * (high[1] - low[1]):
         raise InputError(f"{path.name}: y runs from {low[1]:g} to {high[1]:g} m; it must be symmetric about y = 0")
-    if draft > high[2]:
-        raise InputError(f"{path.name}: the draft {draft:g} m is above the mesh's top at {high[2]:g} m")
     if not 0.75 * length < high[0] - low[0] < 1.5 * length:
         raise InputError(
             f"{path.name}: the mesh is {high[0] - low[0]:g} m long in unit '{unit}' but the length is {length:g} m"
         )
+    if draft > high[2]:
+        raise InputError(f"{path.name}: the draft {draft:g} m is above the mesh's top at {high[2]:g} m")
     x, z = _slice_axes(low, high, draft)
     triangles = np.asarray(mesh.triangles, dtype=np.float64)
     y = np.array([_half_breadths(triangles, float(station), z, draft, path.name) for station in x])
