@@ -183,6 +183,8 @@ def _resistance(arguments: argparse.Namespace) -> int:
         "wetted_surface": hydrostatics.wetted_surface,
         "longitudinal_centre_of_buoyancy": hydrostatics.longitudinal_centre_of_buoyancy,
     }
+    if hull.parent.fit_report is not None:
+        print(hull.parent.fit_report, file=sys.stderr)
     if arguments.json:
         print_json({"hull": figures, "points": [dataclasses.asdict(point) for point in points]})
         return 0

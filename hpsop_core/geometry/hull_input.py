@@ -122,8 +122,8 @@ def _check_size(
     whole = float(x[-1] - x[0])
     if not 0.5 * length < whole < 2.0 * length:
         raise InputError(
-            f"{name}{row_of(len(x) - 1)}: the stations span {whole:g} m but the length is {length:g} m; the table must be "
-            "in metres (no millimetres or feet) and is never scaled"
+            f"{name}{row_of(len(x) - 1)}: the stations span {whole:g} m but the length is {length:g} m; the table must "
+            "be in metres (no millimetres or feet) and is never scaled"
         )
     if draft > z[-1] * (1.0 + 1e-9):
         raise InputError(f"{name}: the draft {draft:g} m is above the highest waterline {z[-1]:g} m of the table")
