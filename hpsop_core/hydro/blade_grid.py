@@ -1,4 +1,4 @@
-"""Panels on one propeller blade, its share of the hub, and its wake.
+"""Panels on one propeller blade and its wake.
 
 Solver axes: lengths in tip radii (R = 1), x downstream, a point at (r, theta) is (x, r cos theta, r sin theta) with
 theta in the sense of rotation. They mirror the propeller axes of `geometry.propeller_surface` (y and z are swapped);
@@ -17,12 +17,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hpsop_core.errors import SolverFailure
 from hpsop_core.geometry.propeller import BladeSections, Propeller
 from hpsop_core.geometry.propeller_sections import cosine_chord_fractions
 from hpsop_core.geometry.propeller_surface import blade_cylindrical
 from hpsop_core.hydro.influence_blade import PanelSet, panel_set
-from hpsop_core.typing_aliases import Array
+from hpsop_core.typing_aliases import Array, IntArray
 
 STAGE = "blade_panels"
 TIP_CHORD_RADIUS = 0.995
@@ -156,145 +155,7 @@ def _section_outline(sections: BladeSections, thickness_factor: Array | float, p
     x_face, theta_face = blade_cylindrical(sections, fractions, False, thickness_factor)
     x = np.concatenate([x_face[:, ::-1], x_back[:, 1:]], axis=1).T
     theta = np.concatenate([theta_face[:, ::-1], theta_back[:, 1:]], axis=1).T
-    return np.ascontiguousarray(x), np.ascontiguousarray(theta)
-
-
-@dataclass(frozen=True)
-class HubGrid:
-    """One blade's sector of the hub, from this blade's face to the next blade's back.
-
-    Attributes:
-        corners: (na + 1, nt + 1, 3), i downstream, j along +theta, outward normals away from the axis.
-        panels: its na nt panels.
-        collocation, normal: (na nt, 3).
-        blade_rows: rows of panels between the blades (first, last + 1).
-    """
-
-    corners: Array
-    panels: PanelSet
-    collocation: Array
-    normal: Array
-    blade_rows: tuple[int, int]
-
-
-@dataclass(frozen=True)
-class HubSettings:
-    """How the hub is panelled; lengths in tip radii.
-
-    Attributes:
-        rows_cylinder: panels on the cylinder before and behind the root, each.
-        rows_end: panels on each rounded end.
-        panels_round: panels round the whole hub, shared by the blades (at least three a sector).
-        cylinder_ahead, cylinder_behind, end_length: extent of the hub before, behind the root, and of its ends.
-    """
-
-    rows_cylinder: int = 3
-    rows_end: int = 4
-    panels_round: int = 18
-    cylinder_ahead: float = 0.25
-    cylinder_behind: float = 0.35
-    end_length: float = 0.4
-
-
-def _outline_chains(x: Array, theta: Array) -> tuple[Array, Array]:
-    """Indices of the root outline's corners from the first to the last along the shaft: over the back, over the face.
-
-    Raises:
-        SolverFailure: the outline is not single valued along the shaft.
-    """
-    # corner 0 and the last one are the trailing edge: the outline is closed
-    x, theta = x[:-1], theta[:-1]
-    first, last = int(np.argmin(x)), int(np.argmax(x))
-    up = np.arange(first, first + (last - first) % x.size + 1) % x.size
-    down = np.arange(first, first - (first - last) % x.size - 1, -1) % x.size
-    for chain in (up, down):
-        if np.any(np.diff(x[chain]) <= 0.0):
-            raise SolverFailure(STAGE, "the hub folds: the root section's outline turns back along the shaft")
-    middle = 0.5 * (x[first] + x[last])
-    back_first = np.interp(middle, x[up], theta[up]) <= np.interp(middle, x[down], theta[down])
-    return (up, down) if back_first else (down, up)
-
-
-def hub_grid(blade: BladeGrid, blade_count: int, settings: HubSettings, wake_pitch: float) -> HubGrid:
-    """The sector of the hub that belongs to the key blade.
-
-    Stations are planes x = constant through every corner of the root outline. So the panels cannot fold round the
-    leading edge of the root (where both sides of the section turn back ahead of it), and hub and blade share their
-    boundary exactly: a corner of one side lies opposite to a point on an edge of the other.
-
-    Args:
-        blade: the blade; its root outline bounds the sector.
-        blade_count: Z.
-        settings: resolution and extent.
-        wake_pitch: P/R along which the sector's edges follow the wake behind the root.
-
-    Raises:
-        SolverFailure: the hub folds, or the roots of neighbouring blades overlap.
-    """
-    hub_radius = float(blade.radius_edges[0])
-    root = blade.surface.corners[:, 0]
-    back, face = _outline_chains(blade.x[:, 0], blade.theta[:, 0])
-    between = np.sort(blade.x[:-1, 0])
-    sector = 2.0 * np.pi / blade_count
-    edges = []
-    for chain in (face, back):
-        y, z = (np.interp(between, root[chain, 0], root[chain, a]) for a in (1, 2))
-        angle = np.interp(between, root[chain, 0], blade.theta[chain, 0])
-        # the chord's own angle on the branch of theta
-        angle = angle + np.angle((y + 1j * z) * np.exp(-1j * angle))
-        edges.append((np.hypot(y, z), angle))
-    (radius_start, theta_start), (radius_end, theta_end) = edges
-    theta_end = theta_end + sector
-    gap = float(np.min(theta_end - theta_start))
-    if gap < 0.05 * sector:
-        raise SolverFailure(
-            STAGE,
-            f"the roots of neighbouring blades meet on the hub: {gap:.3f} rad of the sector {sector:.3f} are free",
-        )
-    x_first, x_last = float(between[0]), float(between[-1])
-    step = (x_last - x_first) / between.size
-    ahead = x_first - _stretched(settings.cylinder_ahead, step, settings.rows_cylinder)
-    behind = x_last + _stretched(settings.cylinder_behind, step, settings.rows_cylinder)
-    quarter = 0.5 * np.pi * np.arange(1, settings.rows_end + 1) / settings.rows_end
-    nose_x = ahead[-1] - settings.end_length * np.sin(quarter)
-    tail_x = behind[-1] + settings.end_length * np.sin(quarter)
-    end_radius = hub_radius * np.cos(quarter)
-    end_radius[-1] = 0.0
-    x = np.concatenate([nose_x[::-1], ahead[:0:-1], between, behind[1:], tail_x])
-    ahead_radius = np.concatenate([end_radius[::-1], np.full(ahead.size - 1, hub_radius)])
-    behind_radius = np.concatenate([np.full(behind.size - 1, hub_radius), end_radius])
-    lead = nose_x.size + ahead.size - 1
-    twist = -2.0 * np.pi * (np.concatenate([behind[1:], tail_x]) - x_last) / wake_pitch
-    columns = max(3, round(settings.panels_round / blade_count))
-    fraction = np.arange(columns + 1) / columns
-    start = np.concatenate([np.full(lead, theta_start[0]), theta_start, theta_start[-1] + twist])
-    end = np.concatenate([np.full(lead, theta_end[0]), theta_end, theta_end[-1] + twist])
-    theta = start[:, None] + (end - start)[:, None] * fraction
-    radius = np.concatenate([ahead_radius, np.full(between.size, hub_radius), behind_radius])
-    radius = np.broadcast_to(radius[:, None], theta.shape).copy()
-    radius[lead : lead + between.size, 0] = radius_start
-    radius[lead : lead + between.size, -1] = radius_end
-    # (d/dj) x (d/di) = theta^ x x^ = r^: outward
-    corners = to_cartesian(x[:, None], radius, theta)
-    collocation, normal = bilinear_points(corners, np.full(columns, 0.5))
-    return HubGrid(
-        corners,
-        panel_set(grid_quadrilaterals(corners)),
-        collocation.reshape(-1, 3),
-        normal.reshape(-1, 3),
-        (lead, lead + between.size - 1),
-    )
-
-
-def _stretched(length: float, first_step: float, count: int) -> Array:
-    """Distances 0 .. length in `count` steps that grow geometrically from about `first_step`."""
-    low, high = 0.2, 10.0
-    for _ in range(60):
-        ratio = np.sqrt(low * high)
-        total = first_step * float(np.sum(ratio ** np.arange(count)))
-        low, high = (ratio, high) if total < length else (low, ratio)
-    steps = np.sqrt(low * high) ** np.arange(count)
-    return np.concatenate([[0.0], np.cumsum(steps) / np.sum(steps) * length])
+    return np.ascontiguousarray(x, dtype=np.float64), np.ascontiguousarray(theta, dtype=np.float64)
 
 
 @dataclass(frozen=True)
@@ -318,7 +179,7 @@ def wake_angles(settings: WakeSettings) -> Array:
     return np.concatenate([[0.0], np.cumsum(steps) / np.sum(steps) * total])
 
 
-def helical_wake(blade: BladeGrid, pitch: Array, settings: WakeSettings) -> tuple[PanelSet, Array]:
+def helical_wake(blade: BladeGrid, pitch: Array, settings: WakeSettings) -> tuple[PanelSet, IntArray]:
     """Wake panels behind the trailing edge and the strip of each.
 
     Args:

@@ -30,25 +30,26 @@ from hpsop_core.hydro.blade_forces import (
 from hpsop_core.hydro.blade_grid import (
     STAGE,
     BladeGrid,
-    HubGrid,
-    HubSettings,
     WakeSettings,
     blade_grid,
     helical_wake,
-    hub_grid,
 )
+from hpsop_core.hydro.blade_hub_grid import HubGrid, HubSettings, hub_grid
 from hpsop_core.hydro.blade_potential import KuttaProblem, SurfaceGradient, factorise, tangential
 from hpsop_core.hydro.open_water import OpenWater, reynolds_number_07R
 from hpsop_core.hydro.section_drag import SectionDrag
-from hpsop_core.typing_aliases import Array
+from hpsop_core.typing_aliases import Array, BoolArray
 
 SOLVER = "blade panels 1"
 WAKE_PITCH_NODES = (0.6, 0.9, 1.2)
 """Pitch of the tabulated wakes over the blade's pitch at 0.7 R; between them quadratic interpolation."""
 
-LINEAR_KUTTA_SPAN = 0.03
-"""Strips within this fraction of the span of the hub or the tip take the linear Kutta condition (see KuttaProblem): the
-first and the last strip of the optimiser's grid."""
+CAMBER_EFFECTIVENESS = 0.93
+"""The one viscous lift factor, fitted on the open-water test of P4119 alone (docs/theory-propeller-panels.md)."""
+
+CROSS_FLOW_DISTANCE = (0.03, 0.08)
+"""Distance from hub or tip, in local chords, between which the pressures of the Kutta condition come to include the
+flow across the chord (KuttaProblem); the first and the last strip take the linear condition."""
 
 
 @dataclass(frozen=True)
@@ -62,6 +63,8 @@ class BladePanelSettings:
             blade's own pitch whatever the loading (PROPAN's setting in the stored comparison).
         forces: "circulation" (Kutta-Joukowski) or "pressure" (integration; needs some 80 x 24 panels).
         hub_in_forces: add the pressure force on the hub.
+        camber_effectiveness: share of the camber that a blade with a boundary layer keeps; not used where the drag is
+            inviscid. The one viscous correction, fitted on P4119's open-water test alone.
         hub: panelling of the hub.
         wake_grid: panelling of the wake.
     """
@@ -71,6 +74,7 @@ class BladePanelSettings:
     wake: Literal["aligned", "geometric_pitch"] = "aligned"
     forces: Literal["circulation", "pressure"] = "circulation"
     hub_in_forces: bool = False
+    camber_effectiveness: float = CAMBER_EFFECTIVENESS
     hub: HubSettings = field(default_factory=HubSettings)
     wake_grid: WakeSettings = field(default_factory=WakeSettings)
 
@@ -79,6 +83,8 @@ class BladePanelSettings:
             raise InputError(f"blade panels: chordwise_panels {self.chordwise_panels} must be even and at least 12")
         if self.radial_panels < 5:
             raise InputError(f"blade panels: radial_panels {self.radial_panels} must be at least 5")
+        if not 0.0 < self.camber_effectiveness <= 1.0:
+            raise InputError(f"blade panels: camber_effectiveness {self.camber_effectiveness} must be in (0, 1]")
         if self.wake not in ("aligned", "geometric_pitch"):
             raise InputError(f"blade panels: wake '{self.wake}' must be aligned or geometric_pitch")
         if self.forces not in ("circulation", "pressure"):
@@ -153,7 +159,7 @@ class BladePanelModel:
             return np.asarray(2.0 * self.propeller.table.at(self.grid.radius_edges).pitch_ratio)
         return np.full(self.grid.radius_edges.size, wake_pitch)
 
-    def condition(self, advance_coefficient: float, drag: SectionDrag) -> _Condition:
+    def condition(self, advance_coefficient: float) -> _Condition:
         """Solve one advance coefficient: jumps by the Kutta condition, wake pitch by alignment.
 
         Raises:
@@ -183,7 +189,7 @@ class BladePanelModel:
             # the error falls with the pitch, at a slope of about -0.7 to -1.3
             pitch = min(max(pitch - error / min(max(slope, -3.0), -0.3), low), high)
             jump = jumps(pitch, jump)
-        raise SolverFailure(STAGE, f"the wake does not align with the loading at {label} (pitch changes by {error:.1e} R)")
+        raise SolverFailure(STAGE, f"the wake does not align with the loading at {label} (pitch {error:.1e} R off)")
 
     def _loaded_pitch(self, jump: Array, wake_pitch: float, advance_coefficient: float) -> float:
         """Hydrodynamic pitch 2 pi r tan(beta_i), averaged over the radius with the weight of an elliptic loading."""
@@ -215,7 +221,7 @@ class BladePanelModel:
         if self.settings.hub_in_forces:
             panels = self.hub.panels
             hub_thrust, hub_torque = pressure_forces(
-                self.hub_pressure(condition).ravel(),
+                self.hub_pressure(condition),
                 panels.axes[:, 2] * panels.moments[:, :1],
                 panels.centre,
                 self.propeller.blade_count,
@@ -243,12 +249,15 @@ class BladePanelModel:
         return self._pressure(condition, surface.collocation, surface.normal, slice(0, surface.panels.count))
 
     def hub_pressure(self, condition: _Condition) -> Array:
-        """(na, nt) pressures over rho at the hub's collocation points."""
-        shape = (self.hub.corners.shape[0] - 1, self.hub.corners.shape[1] - 1, 3)
+        """(n,) pressures over rho at the hub's collocation points."""
         count = self.grid.surface.panels.count
-        return self._pressure(
-            condition, self.hub.collocation.reshape(shape), self.hub.normal.reshape(shape), slice(count, None)
-        )
+        pressures = []
+        for block, part in zip(self.hub.blocks, self.hub.block_slices, strict=True):
+            shape = (block.shape[0] - 1, block.shape[1] - 1, 3)
+            rows = slice(part.start + count, part.stop + count)
+            points, normal = self.hub.collocation[part].reshape(shape), self.hub.normal[part].reshape(shape)
+            pressures.append(self._pressure(condition, points, normal, rows).ravel())
+        return np.concatenate(pressures)
 
 
 def rotating_onset(points: Array) -> Array:
@@ -260,13 +269,18 @@ def rotating_onset(points: Array) -> Array:
     return onset
 
 
-def blade_panel_model(propeller: Propeller, settings: BladePanelSettings) -> BladePanelModel:
-    """Panel and factorise a propeller.
+def blade_panel_model(
+    propeller: Propeller, settings: BladePanelSettings, viscous: bool = False
+) -> BladePanelModel:
+    """Panel and factorise a propeller, with the camber that a viscous flow leaves if ``viscous``.
 
     Raises:
         SolverFailure: the panels cannot represent the geometry.
     """
-    grid = blade_grid(propeller, settings.chordwise_panels, settings.radial_panels)
+    camber = settings.camber_effectiveness if viscous else 1.0
+    table = propeller.table
+    effective = replace(propeller, table=replace(table, camber_ratio=camber * table.camber_ratio))
+    grid = blade_grid(effective, settings.chordwise_panels, settings.radial_panels)
     pitch_07 = 2.0 * propeller.pitch_diameter_ratio_07R
     hub = hub_grid(grid, propeller.blade_count, settings.hub, WAKE_PITCH_NODES[1] * pitch_07)
     onset_points = np.concatenate([grid.onset_points.reshape(-1, 3), hub.collocation])
@@ -274,11 +288,9 @@ def blade_panel_model(propeller: Propeller, settings: BladePanelSettings) -> Bla
         grid.surface,
         propeller.blade_count,
         rotating_onset(onset_points),
-        (hub.panels, hub.collocation, hub.normal),
+        hub,
     )
-    span = (grid.radius_middle - grid.radius_edges[0]) / (1.0 - grid.radius_edges[0])
-    at_ends = np.flatnonzero(np.minimum(span, 1.0 - span) < LINEAR_KUTTA_SPAN)
-    kutta = KuttaProblem.of(body, tuple(int(i) for i in at_ends))
+    kutta = KuttaProblem.of(body, _cross_flow_share(propeller, grid), _end_strips(settings.radial_panels))
     if settings.wake == "geometric_pitch":
         wake_pitches = np.zeros(1)
         pitches = [2.0 * propeller.table.at(grid.radius_edges).pitch_ratio]
@@ -293,6 +305,21 @@ def blade_panel_model(propeller: Propeller, settings: BladePanelSettings) -> Bla
         propeller, settings, grid, hub, StripData.of(propeller, grid), onset_points, body.onset_potential,
         wake_pitches, potentials, terms, kutta, body.row_sum_defect,
     )
+
+
+def _cross_flow_share(propeller: Propeller, grid: BladeGrid) -> Array:
+    """(m,) share of the cross flow in the Kutta condition: rises smoothly with the distance from the blade's ends."""
+    radius, edges = grid.radius_middle, grid.radius_edges
+    distance = np.minimum(radius - edges[0], edges[-1] - radius) / (2.0 * propeller.table.at(radius).chord_ratio)
+    low, high = CROSS_FLOW_DISTANCE
+    x = np.clip((distance - low) / (high - low), 0.0, 1.0)
+    return np.asarray(x * x * (3.0 - 2.0 * x))
+
+
+def _end_strips(strips: int) -> BoolArray:
+    ends = np.zeros(strips, dtype=np.bool_)
+    ends[[0, -1]] = True
+    return ends
 
 
 @dataclass(frozen=True)
@@ -341,12 +368,13 @@ def solve(
     if advance.ndim != 1 or not np.all(np.isfinite(advance)) or np.any(advance < 0.0):
         raise InputError("advance coefficients must be finite numbers of at least 0")
     try:
-        model = blade_panel_model(propeller, settings)
+        model = blade_panel_model(propeller, settings, drag.viscous)
     except SolverFailure:
         if settings.chordwise_panels >= 40:
             raise
-        model = blade_panel_model(propeller, replace(settings, chordwise_panels=40, radial_panels=15))
-    conditions = [model.condition(float(j), drag) for j in advance]
+        finer = replace(settings, chordwise_panels=40, radial_panels=15)
+        model = blade_panel_model(propeller, finer, drag.viscous)
+    conditions = [model.condition(float(j)) for j in advance]
     forces = np.array([model.forces(condition, drag) for condition in conditions]).reshape(-1, 2)
     if not np.all(np.isfinite(forces)):
         bad = advance[~np.all(np.isfinite(forces), axis=1)][0]

@@ -20,8 +20,9 @@ from scipy.linalg import lu_factor, lu_solve
 
 from hpsop_core.errors import SolverFailure
 from hpsop_core.hydro.blade_grid import STAGE, StripSurface
+from hpsop_core.hydro.blade_hub_grid import HubGrid
 from hpsop_core.hydro.influence_blade import PanelSet, body_influence, strip_influence
-from hpsop_core.typing_aliases import Array
+from hpsop_core.typing_aliases import Array, BoolArray, IntArray
 
 ROW_SUM_TOLERANCE = 0.1
 _KUTTA_ITERATIONS = 30
@@ -49,59 +50,48 @@ class BodyPotential:
     onset_potential: Array
     row_sum_defect: Array
 
-    def wake_potential(self, panels: PanelSet, strip: Array) -> Array:
+    def wake_potential(self, panels: PanelSet, strip: IntArray) -> Array:
         """(n, m): phi of a unit jump over each wake strip."""
         influence = strip_influence(self.points, panels, strip, self.surface.shape[1], self.blade_count)
         result: Array = lu_solve(self.factors, influence, check_finite=False)
         return result
 
 
-def factorise(
-    surface: StripSurface,
-    blade_count: int,
-    onset: Array,
-    attached: tuple[PanelSet, Array, Array] | None = None,
-    attached_free: Array | None = None,
-) -> BodyPotential:
+def factorise(surface: StripSurface, blade_count: int, onset: Array, hub: HubGrid | None = None) -> BodyPotential:
     """Assemble and factorise the body's equations.
 
     Args:
-        surface: the lifting surface.
+        surface: the lifting surface, closed but for the edge that it shares with the hub.
         blade_count: number of rotational images, 1 for a wing.
         onset: (n, 3, b) basis of onset velocities at all collocation points (surface first).
-        attached: panels, collocation points and normals of what is attached.
-        attached_free: (m,) bool, which strips of the surface are away from what is attached: their row sums are
-            checked tightly. None checks every strip.
+        hub: one blade's sector of the hub.
 
     Raises:
         SolverFailure: the panels do not enclose the body (row sums), or the matrix is singular.
     """
-    count = surface.panels.count
+    count, strips = surface.panels.count, surface.shape[1]
     points = surface.collocation.reshape(-1, 3)
     normals = surface.normal.reshape(-1, 3)
     panels = surface.panels
-    if attached is not None:
-        panels = _joined(panels, attached[0])
-        points = np.concatenate([points, attached[1]])
-        normals = np.concatenate([normals, attached[2]])
-    own = np.arange(points.shape[0])
-    dipole, source = body_influence(points, panels, blade_count, own)
+    if hub is not None:
+        panels = _joined(panels, hub.panels)
+        points = np.concatenate([points, hub.collocation])
+        normals = np.concatenate([normals, hub.normal])
+    index = np.arange(points.shape[0])
+    dipole, source = body_influence(points, panels, blade_count, index)
     if not (np.all(np.isfinite(dipole)) and np.all(np.isfinite(source))):
         raise SolverFailure(STAGE, "an influence coefficient is not finite: a panel has collapsed")
     defect = np.abs(dipole.sum(axis=1) + 2.0 * np.pi)
-    strips = surface.shape[1]
-    free = np.ones(strips, dtype=bool) if attached_free is None else attached_free
-    on_surface = defect[:count].reshape(-1, strips)
-    worst = float(np.max(on_surface[:, free], initial=0.0))
-    if worst > ROW_SUM_TOLERANCE:
-        strip = int(np.argmax(np.where(free, on_surface.max(axis=0), -1.0)))
+    worst = int(np.argmax(defect))
+    if defect[worst] > ROW_SUM_TOLERANCE:
+        where = f"strip {worst % strips + 1} of {strips} of the blade" if worst < count else "the hub"
         raise SolverFailure(
             STAGE,
-            f"row sums of the dipole matrix miss -2 pi by {worst:.2f} (at most {ROW_SUM_TOLERANCE}) on strip "
-            f"{strip + 1} of {strips}: the blade's surface cuts itself or the next blade",
+            f"row sums of the dipole matrix miss -2 pi by {defect[worst]:.2f} (at most {ROW_SUM_TOLERANCE}) on "
+            f"{where}: the surface cuts itself or the next blade",
         )
     matrix = -dipole
-    matrix[own, own] += 2.0 * np.pi
+    matrix[index, index] += 2.0 * np.pi
     factors = lu_factor(matrix, check_finite=False)
     right = source @ np.einsum("nab,na->nb", onset, normals)
     potential = lu_solve(factors, right, check_finite=False)
@@ -146,13 +136,15 @@ class SurfaceGradient:
         """Gradient (n, m, 3, k) of k potentials (n, m, k)."""
         along_i = np.gradient(potential, axis=0, edge_order=2)
         along_j = np.gradient(potential, axis=1, edge_order=2)
-        return self.dual_i[..., None] * along_i[:, :, None, :] + self.dual_j[..., None] * along_j[:, :, None, :]
+        return np.asarray(
+            self.dual_i[..., None] * along_i[:, :, None, :] + self.dual_j[..., None] * along_j[:, :, None, :]
+        )
 
 
 def tangential(vector: Array, normal: Array) -> Array:
     """The part of vectors (..., 3, k) along surfaces with unit normals (..., 3)."""
     along = np.einsum("...ak,...a->...k", vector, normal)
-    return vector - normal[..., :, None] * along[..., None, :]
+    return np.asarray(vector - normal[..., :, None] * along[..., None, :])
 
 
 @dataclass(frozen=True)
@@ -162,6 +154,7 @@ class _TrailingStation:
     Attributes:
         free: (m, 3, b) onset flow; tangent: (m, 3, b) velocity of unit onset flows without wake.
         along, across: (m, 3) dual vectors of the index along the chord and across the span.
+        step: (m, 3) from the one row to the other.
         rows: the two rows of collocation points.
     """
 
@@ -169,6 +162,7 @@ class _TrailingStation:
     tangent: Array
     along: Array
     across: Array
+    step: Array
     rows: tuple[int, int]
 
     @classmethod
@@ -184,14 +178,23 @@ class _TrailingStation:
         normal = np.cross(a, b)
         normal /= np.maximum(np.linalg.norm(normal, axis=1, keepdims=True), 1e-300)
         free = 0.5 * (onset[first] + onset[second])
-        bare = cls(free, tangential(free, normal), along, across, rows)
-        return cls(free, bare.tangent + bare.gradient(potential), along, across, rows)
+        bare = cls(free, tangential(free, normal), along, across, a, rows)
+        return cls(free, bare.tangent + bare.gradient(potential), along, across, a, rows)
+
+    def weighting(self, cross_flow_share: Array) -> Array:
+        """(m, 3, 3): v . W v is the squared speed, the part across the chord times its share."""
+        size = np.linalg.norm(self.step, axis=1, keepdims=True)
+        chord = self.step / np.maximum(size, 1e-300)
+        share = cross_flow_share[:, None, None]
+        return np.asarray(share * np.eye(3) + (1.0 - share) * chord[:, :, None] * chord[:, None, :])
 
     def gradient(self, potential: Array) -> Array:
         """(m, 3, k) surface gradient of potentials (n, m, k)."""
         first, second = potential[self.rows[0]], potential[self.rows[1]]
         across = np.gradient(0.5 * (first + second), axis=0, edge_order=2)
-        return self.along[:, :, None] * (second - first)[:, None, :] + self.across[:, :, None] * across[:, None, :]
+        return np.asarray(
+            self.along[:, :, None] * (second - first)[:, None, :] + self.across[:, :, None] * across[:, None, :]
+        )
 
 
 @dataclass(frozen=True)
@@ -203,24 +206,27 @@ class KuttaProblem:
     edge linearly in the row index: 2 dp(1/2) - dp(3/2) = 0. On 24 x 10 panels the forces are then within 0.5 % of
     those on 80 x 24; equal pressures at the last collocation points would leave 3 to 5 %.
 
-    Strips next to the tip and to the hub take Morino's linear condition (the jump is the difference of the last
-    potentials): round the tip's edge the flow crosses from one side to the other, and beside the hub the edge of the
-    wake crosses hub panels; on fine grids no jump makes the pressures equal there.
+    Close to the tip the flow crosses round its edge from one side to the other, and beside the hub the edge of the
+    wake crosses hub panels; no jump makes the pressures equal there. `cross_flow_share` takes the part of the velocity
+    across the chord out of the pressures towards the ends, and the end strips themselves take Morino's linear condition
+    (the jump is the difference of the last potentials).
 
     Attributes:
         surface: the lifting surface.
         stations: ((lower, upper), (lower, upper)) from the trailing edge.
         onset_difference: (m, b) upper minus lower potential at the last collocation points.
-        linear_strips: strips that take Morino's condition.
+        cross_flow_share: (m,) from 1, equal pressures, to 0, equal speeds along the chord.
+        linear: (m,) bool, strips that take Morino's condition.
     """
 
     surface: StripSurface
     stations: tuple[tuple[_TrailingStation, _TrailingStation], ...]
     onset_difference: Array
-    linear_strips: tuple[int, ...]
+    cross_flow_share: Array
+    linear: BoolArray
 
     @classmethod
-    def of(cls, body: BodyPotential, linear_strips: tuple[int, ...]) -> KuttaProblem:
+    def of(cls, body: BodyPotential, cross_flow_share: Array, linear: BoolArray) -> KuttaProblem:
         rows, strips = body.surface.shape
         count = rows * strips
         onset = body.onset[:count].reshape(rows, strips, 3, -1)
@@ -232,7 +238,7 @@ class KuttaProblem:
             )
             for k in range(2)
         )
-        return cls(body.surface, stations, potential[-1] - potential[0], linear_strips)
+        return cls(body.surface, stations, potential[-1] - potential[0], cross_flow_share, linear)
 
     def wake_terms(self, wake_potential: Array) -> Array:
         """What the condition needs of unit jumps: (5, m, 3, m), linear in the wake potentials (n, m).
@@ -271,28 +277,34 @@ class KuttaProblem:
             SolverFailure: Newton's method does not converge.
         """
         linear_matrix, linear_right = self._linear(weights, terms)
-        linear = list(self.linear_strips)
-        bases, heads = [], []
-        for lower, upper in self.stations:
-            bases.append((lower.tangent @ weights, upper.tangent @ weights))
-            heads.append(np.sum((upper.free @ weights) ** 2 - (lower.free @ weights) ** 2, axis=1))
-        scale = float(np.max(np.sum((self.stations[0][1].free @ weights) ** 2, axis=1)))
+        signs = (1.0, -1.0)
+        sides, shares = [], []
+        for k, factor in enumerate((2.0, -1.0)):
+            for side in range(2):
+                station = self.stations[k][side]
+                sides.append((factor * signs[side], station.tangent @ weights, terms[2 * k + side]))
+                shares.append(station.weighting(self.cross_flow_share))
+        free = [np.einsum("ma,mab,mb->m", u, share, u) for u, share in zip(
+            [s.free @ weights for pair in self.stations for s in pair], shares, strict=True)]
+        head = -sum(side[0] * u for side, u in zip(sides, free, strict=True))
+        scale = float(np.max(free[1]))
         length = float(np.sqrt(scale))
+        linear = self.linear
 
         def residual(jump: Array) -> tuple[Array, Array]:
-            value = np.zeros(jump.size)
+            value = head.copy()
             jacobian = np.zeros((jump.size, jump.size))
-            for k, factor in enumerate((2.0, -1.0)):
-                lower = bases[k][0] + terms[2 * k] @ jump
-                upper = bases[k][1] + terms[2 * k + 1] @ jump
-                value += factor / scale * (heads[k] + np.sum(lower**2 - upper**2, axis=1))
-                change = np.einsum("ma,mak->mk", lower, terms[2 * k]) - np.einsum("ma,mak->mk", upper, terms[2 * k + 1])
-                jacobian += 2.0 * factor / scale * change
+            for (factor, base, term), share in zip(sides, shares, strict=True):
+                velocity = base + term @ jump
+                weighted = np.einsum("mab,mb->ma", share, velocity)
+                value += factor * np.einsum("ma,ma->m", velocity, weighted)
+                jacobian += 2.0 * factor * np.einsum("ma,mak->mk", weighted, term)
+            value, jacobian = value / scale, jacobian / scale
             value[linear] = (linear_matrix[linear] @ jump - linear_right[linear]) / length
             jacobian[linear] = linear_matrix[linear] / length
             return value, jacobian
 
-        jump = start
+        jump = np.asarray(start, dtype=np.float64)
         value, jacobian = residual(jump)
         for _ in range(_KUTTA_ITERATIONS):
             norm = float(np.abs(value).max())
@@ -300,15 +312,15 @@ class KuttaProblem:
                 step = np.linalg.solve(jacobian, -value)
             except np.linalg.LinAlgError:
                 break
-            share = 1.0
+            part = 1.0
             for _ in range(8):
-                trial = residual(jump + share * step)
+                trial = residual(jump + part * step)
                 if float(np.abs(trial[0]).max()) < norm or norm < 1e-10:
                     break
-                share *= 0.5
-            jump = jump + share * step
+                part *= 0.5
+            jump = jump + part * step
             value, jacobian = trial
-            if float(np.abs(share * step).max()) <= 1e-11 * (1.0 + float(np.abs(jump).max())):
+            if float(np.abs(part * step).max()) <= 1e-11 * (1.0 + float(np.abs(jump).max())):
                 break
         worst = float(np.abs(value).max())
         if not (np.all(np.isfinite(jump)) and worst < 1e-7):

@@ -26,9 +26,10 @@ from typing import Any
 import numpy as np
 from numba import njit
 
-from hpsop_core.typing_aliases import Array
+from hpsop_core.typing_aliases import Array, IntArray
 
 FAR_DIAGONALS = 3.0
+_SLIVER = 1e-6
 _TWO_PI = 2.0 * pi
 _FOUR_PI = 4.0 * pi
 
@@ -80,8 +81,10 @@ def panel_set(corners: Array) -> PanelSet:
     x1, y1 = np.roll(x0, -1, axis=1), np.roll(y0, -1, axis=1)
     cross = x0 * y1 - x1 * y0
     projected = np.maximum(0.5 * cross.sum(axis=1), 1e-300)
-    cx = ((x0 + x1) * cross).sum(axis=1) / (6.0 * projected)
-    cy = ((y0 + y1) * cross).sum(axis=1) / (6.0 * projected)
+    # A sliver's centroid is lost in rounding: take the mean of its corners.
+    solid = projected > _SLIVER * size**2
+    cx = np.where(solid, ((x0 + x1) * cross).sum(axis=1) / (6.0 * projected), 0.0)
+    cy = np.where(solid, ((y0 + y1) * cross).sum(axis=1) / (6.0 * projected), 0.0)
     ixx = ((x0 * x0 + x0 * x1 + x1 * x1) * cross).sum(axis=1) / 12.0 - projected * cx * cx
     iyy = ((y0 * y0 + y0 * y1 + y1 * y1) * cross).sum(axis=1) / 12.0 - projected * cy * cy
     ixy = ((2 * x0 * y0 + x0 * y1 + x1 * y0 + 2 * x1 * y1) * cross).sum(axis=1) / 24.0 - projected * cx * cy
@@ -318,7 +321,7 @@ def _strip_influence(
 
 
 def body_influence(
-    points: Array, panels: PanelSet, blade_count: int = 1, own_panel: Array | None = None, far: float = FAR_DIAGONALS
+    points: Array, panels: PanelSet, blade_count: int = 1, own_panel: IntArray | None = None, far: float = FAR_DIAGONALS
 ) -> tuple[Array, Array]:
     """Dipole and source influence matrices of panels and their rotational images.
 
@@ -348,7 +351,7 @@ def body_influence(
 
 
 def strip_influence(
-    points: Array, panels: PanelSet, strip: Array, strip_count: int, blade_count: int = 1, far: float = FAR_DIAGONALS
+    points: Array, panels: PanelSet, strip: IntArray, strip_count: int, blade_count: int = 1, far: float = FAR_DIAGONALS
 ) -> Array:
     """Dipole influence of wake panels summed over strips (and images): (m, strip_count).
 
