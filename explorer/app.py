@@ -71,7 +71,7 @@ class Explorer:
         self.state.hub.on(("draft",), self.services.draft_changed)
         self.state.on_remember = lambda: worker.latest("memory", self._save_memory)
         self._gone = threading.Event()
-        build_shared(self.state, self.server)
+        self.settings = build_shared(self.state, self.server)
         self.server.on_client_connect(self._connect)
         self.server.on_client_disconnect(self._disconnect)
         # The initial design stands ready when the first browser asks.

@@ -133,7 +133,7 @@ class Bridge:
 def overlay(name: str, content: str) -> str:
     """HTML that the browser lifts out of its panel and lays over the 3D view."""
     return (
-        f'<div data-overlay="{name}" style="display:none">{content}</div>'
+        f'<template data-overlay="{name}">{content}</template>'
         '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.overlay(this)">'
     )
 
@@ -141,7 +141,7 @@ def overlay(name: str, content: str) -> str:
 def tooltip(chart: str, content: str, serial: int) -> str:
     """HTML that the browser shows beside the pointer while it rests on ``chart``."""
     return (
-        f'<div data-chart="{chart}" data-serial="{serial}" style="display:none">{content}</div>'
+        f'<template data-chart="{chart}" data-serial="{serial}">{content}</template>'
         '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.tip(this)">'
     )
 

@@ -13,6 +13,7 @@ from explorer.views.charts_view import ChartsView
 from explorer.views.compare_view import CompareView
 from explorer.views.design_view import DesignView
 from explorer.views.library_view import LibraryView
+from explorer.views.overlay_view import OverlayView
 from explorer.views.parallel_view import ParallelBrushes
 from explorer.views.pareto_view import ParetoView
 from explorer.views.run_control import RunControl
@@ -27,7 +28,7 @@ LEFT_WIDTH, RIGHT_WIDTH = 340, 490
 _BRAND = (25, 113, 194)
 
 
-def build_shared(app: AppState, server: viser.ViserServer) -> None:
+def build_shared(app: AppState, server: viser.ViserServer) -> SettingsView:
     """The left dock: one for all browsers."""
     gui = server.gui
     gui.configure_theme(show_logo=False, show_share_button=False, brand_color=_BRAND)
@@ -57,9 +58,10 @@ def build_shared(app: AppState, server: viser.ViserServer) -> None:
     space = tabs.add_tab("Design space")
     case_tab = tabs.add_tab("Case")
     runs = tabs.add_tab("Runs")
-    SettingsView(app, gui, space, case_tab, refuse, save, SEARCH_FIELDS)
+    settings = SettingsView(app, gui, space, case_tab, refuse, save, SEARCH_FIELDS)
     with runs:
         LibraryView(app, gui)
+    return settings
 
 
 def build_session(session: Session, client: viser.ClientHandle) -> None:
@@ -90,6 +92,7 @@ def build_session(session: Session, client: viser.ClientHandle) -> None:
         with whatif:
             WhatIfView(session, gui)
     SceneView(session, client)
+    OverlayView(session, client)
 
     def hello(event: PageEvent) -> None:
         _resize(session, event)

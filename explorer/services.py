@@ -5,17 +5,24 @@ from __future__ import annotations
 import threading
 from pathlib import Path
 
+import numpy as np
+from numpy.typing import NDArray
+
 from explorer.charts.curves import DesignCurves, HullLines
 from explorer.draft import Draft
 from explorer.library import LibraryEntry, RunLibrary
 from explorer.physics import Physics, Remembered
 from explorer.run_keeper import RunKeeper
 from explorer.run_picture import ACTIVE, FAILED, IDLE, RunPicture
-from explorer.scene.geometry import SceneGeometry, scene_geometry
+from explorer.scene.blades import blade_pressure
+from explorer.scene.geometry import SceneGeometry, ghost_segments, scene_geometry
+from explorer.scene.pressure import PressureMap, hull_pressure
+from explorer.scene.waves import WaveField, kelvin_waves, panel_waves
 from explorer.state import AppState
 from hpsop_core.case import Case
 from hpsop_core.design import DesignVariables
 from hpsop_core.errors import InputError
+from hpsop_core.evaluation import design_hull, design_propeller
 from hpsop_core.evaluation_result import Evaluation
 
 
@@ -36,6 +43,8 @@ class Services:
         self._guard = threading.RLock()
         self._app: AppState | None = None
         self._geometry: Remembered[SceneGeometry] = Remembered(24)
+        self._waves: Remembered[WaveField] = Remembered(6)
+        self._pressure: Remembered[PressureMap] = Remembered(8)
         self.physics = Physics()
         self.asked_to_delete = ""
 
@@ -87,6 +96,50 @@ class Services:
         case = self.case
         key = (case.hull, case.propeller, case.initial, variables.key())
         return self._geometry.get(key, lambda: scene_geometry(case, variables))
+
+    def ghost(self, variables: DesignVariables) -> NDArray[np.float64]:
+        """A hull as a lines drawing in space: (n, 2, 3) segments of its sections and its waterline, both sides."""
+        lines, geometry = self.lines(variables), self.geometry(variables)
+        return ghost_segments(lines, geometry.waterline)
+
+    def waves(self, evaluation: Evaluation, index: int) -> WaveField:
+        """The water surface at a condition, by the evaluation's own level.
+
+        Raises:
+            SolverFailure: it cannot be computed.
+        """
+        case, condition = self.case, evaluation.conditions[index]
+        key = (case, evaluation.level, evaluation.variables.key(), condition.froude_number, "waves")
+
+        def compute() -> WaveField:
+            hull = design_hull(case, evaluation.variables)
+            if evaluation.level == 2:
+                return panel_waves(hull, condition.froude_number)
+            return kelvin_waves(hull, condition.froude_number, condition.wave_calibration)
+
+        return self._waves.get(key, compute)
+
+    def hull_pressure(self, evaluation: Evaluation, index: int) -> PressureMap:
+        """Pressure on the hull at a condition, always by level 2.
+
+        Raises:
+            SolverFailure: it cannot be computed.
+        """
+        case, froude = self.case, evaluation.conditions[index].froude_number
+        key = (case.hull, case.initial, evaluation.variables.key(), froude, "hull")
+        return self._pressure.get(key, lambda: hull_pressure(design_hull(case, evaluation.variables), froude))
+
+    def blade_pressure(self, evaluation: Evaluation, index: int) -> PressureMap | None:
+        """Pressure on the blades at a condition's advance coefficient, always by level 2.
+
+        Raises:
+            SolverFailure: it cannot be computed.
+        """
+        case, condition = self.case, evaluation.conditions[index]
+        key = (case.propeller, evaluation.variables.key(), condition.advance_coefficient, "blades")
+        return self._pressure.get(
+            key, lambda: blade_pressure(design_propeller(case, evaluation.variables), condition.advance_coefficient)
+        )
 
     def add_by_hand(self, evaluation: Evaluation) -> int:
         """Keep a hand-made design in the run's archive.

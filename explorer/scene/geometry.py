@@ -7,14 +7,16 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from explorer.charts.curves import HullLines
 from hpsop_core.case import Case
 from hpsop_core.design import DesignVariables
 from hpsop_core.evaluation import design_hull, design_propeller
 from hpsop_core.geometry.hull_mesh import hull_view_parts
-from hpsop_core.geometry.propeller import Propeller
 from hpsop_core.geometry.propeller_clearance import propeller_plane_x
-from hpsop_core.geometry.propeller_surface import key_blade, rotate_blade
+from hpsop_core.geometry.propeller_mesh import propeller_view_parts
 
+# propeller axes: x downstream, y to starboard; ship axes: x forward, y to port
+_TO_SHIP = np.array([-1.0, -1.0, 1.0])
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
@@ -24,7 +26,7 @@ class SceneGeometry:
 
     Attributes:
         underwater, topsides: vertices and faces, fixed topology.
-        propeller: vertices about the hub's centre, turning about x, and faces.
+        blades, hub: vertices about the hub's centre, turning about x, and faces.
         propeller_position: of the hub's centre.
         waterline: (n, 3) closed.
         water: a wide sheet at the waterline.
@@ -33,7 +35,8 @@ class SceneGeometry:
 
     underwater: Mesh
     topsides: Mesh
-    propeller: Mesh
+    blades: Mesh
+    hub: Mesh
     propeller_position: tuple[float, float, float]
     waterline: NDArray[np.float64]
     water: Mesh
@@ -52,8 +55,10 @@ def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
     hull = design_hull(case, variables)
     propeller = design_propeller(case, variables)
     parts = hull_view_parts(hull, "view")
+    blades, hub = (propeller_view_parts(propeller, "view")[name] for name in ("blades", "hub"))
     empty = (np.zeros((3, 3)), np.array([[0, 1, 2]]))
     port = hull.waterline()
+    port = port + np.array([0.0, 0.06])  # just outside the hull, or it would drown in it
     line = np.concatenate([port, port[::-1] * np.array([1.0, -1.0])])
     waterline = np.column_stack([line, np.full(len(line), hull.draft)])
     x0, x1, half = -0.35 * hull.length, 1.2 * hull.length, 0.45 * hull.length
@@ -61,7 +66,8 @@ def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
     return SceneGeometry(
         underwater=parts.get("underwater", empty),
         topsides=parts.get("topsides", empty),
-        propeller=propeller_view_mesh(propeller),
+        blades=(blades[0] * _TO_SHIP, blades[1]),
+        hub=(hub[0] * _TO_SHIP, hub[1]),
         propeller_position=(float(propeller_plane_x(hull, propeller)), 0.0, float(hull.shaft_height)),
         waterline=waterline,
         water=(water, np.array([[0, 1, 2], [0, 2, 3]])),
@@ -72,42 +78,13 @@ def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
     )
 
 
-def propeller_view_mesh(propeller: Propeller) -> Mesh:
-    """Blades and a plain hub about the shaft, in ship axes with the origin at the hub's centre."""
-    radii = propeller.hub_ratio * 0.98 + (1.0 - propeller.hub_ratio * 0.98) * np.sin(np.linspace(0.0, np.pi / 2, 18))
-    radii = np.minimum(radii, 0.9995)
-    chord = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 15))
-    back, face = key_blade(propeller, radii, chord)
-    grid = np.concatenate([back, face[:, -2:0:-1]], axis=1)
-    rows, columns = grid.shape[:2]
-    index = np.arange(rows * columns).reshape(rows, columns)
-    a, b = index[:-1], index[1:]
-    c, d = np.roll(b, -1, axis=1), np.roll(a, -1, axis=1)
-    faces = np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)])
-    vertices, triangles = [], []
-    for blade in range(propeller.blade_count):
-        triangles.append(faces + blade * rows * columns)
-        vertices.append(rotate_blade(grid, blade, propeller.blade_count).reshape(-1, 3))
-    angle = np.linspace(0.0, 2.0 * np.pi, 25)[:-1]
-    profile = np.array([[-0.32, 0.0], [-0.32, 1.0], [0.32, 0.95], [0.42, 0.8], [0.5, 0.45], [0.52, 0.0]])
-    ring = np.stack(
-        [
-            np.column_stack(
-                [
-                    np.full_like(angle, x),
-                    r * propeller.hub_ratio * np.sin(angle),
-                    r * propeller.hub_ratio * np.cos(angle),
-                ]
-            )
-            for x, r in profile
-        ]
-    )
-    index = np.arange(ring.shape[0] * ring.shape[1]).reshape(ring.shape[:2])
-    a, b = index[:-1], index[1:]
-    c, d = np.roll(b, -1, axis=1), np.roll(a, -1, axis=1)
-    hub = np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)])
-    triangles.append(hub + sum(len(part) for part in vertices))
-    vertices.append(ring.reshape(-1, 3))
-    # propeller axes: x downstream, y to starboard; ship axes: x forward, y to port
-    points = np.concatenate(vertices) * 0.5 * propeller.diameter * np.array([-1.0, -1.0, 1.0])
-    return points, np.concatenate(triangles)
+def ghost_segments(lines: HullLines, waterline: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Sections on both sides and the waterline as (n, 2, 3) segments: a ghost that hides nothing."""
+    pieces = [np.stack([waterline[:-1], waterline[1:]], axis=1)]
+    for station, parts in lines.sections:
+        x = station / 20.0 * lines.length
+        for part in parts:
+            for side in (1.0, -1.0):
+                points = np.column_stack([np.full(len(part), x), side * part[:, 0], part[:, 1]])
+                pieces.append(np.stack([points[:-1], points[1:]], axis=1))
+    return np.concatenate(pieces)

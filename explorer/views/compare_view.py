@@ -29,8 +29,8 @@ class CompareView:
         if not session.pins:
             self._html.show(
                 box(
-                    '<p class="soft">No design is pinned. Select one and press <b>pin</b> in the Design tab: up to four '
-                    "stand here side by side, their curves and body plans overlay in Charts, and the first pin's "
+                    '<p class="soft">No design is pinned. Select one and press <b>pin</b> in the Design tab: up to '
+                    "four stand here side by side, their curves and body plans overlay in Charts, and the first pin's "
                     "hull can be the ghost in 3D.</p>"
                 )
             )

@@ -16,9 +16,10 @@ from explorer.scene.geometry import SceneGeometry
 from explorer.state import Session, Shown
 from hpsop_core.errors import HpsopError
 
-UNDERWATER = (158, 62, 48)
-TOPSIDES = (70, 86, 104)
+UNDERWATER = (176, 84, 66)
+TOPSIDES = (92, 112, 134)
 BRONZE = (196, 150, 72)
+HUB = (150, 118, 66)
 GHOST = (130, 140, 150)
 WATER = (72, 130, 170)
 WATERLINE = (235, 240, 245)
@@ -41,6 +42,10 @@ class SceneView:
         self._spinning = threading.Event()
         self.shown_design: object = None
         client.scene.configure_default_lights(cast_shadow=False)
+        # light from below as well: half of what a naval architect looks at is under water
+        client.scene.add_light_hemisphere(
+            "/lights/sky", sky_color=(255, 255, 255), ground_color=(190, 200, 215), intensity=1.6
+        )
         session.hub.on(("selection", "options", "pins"), self._ask)
         session.hub.on(("size",), lambda: self.place_camera())
         session.handle("act", "camera", self._camera)
@@ -74,19 +79,20 @@ class SceneView:
             options.topsides,
             options.water,
             options.waves,
+            options.pressure,
             options.camera == "propeller",
             session.picture.case,
         )
         if state != self._drawn:
             try:
                 geometry = session.app.services.geometry(shown.evaluation.variables)
-                ghost_geometry = session.app.services.geometry(ghost.evaluation.variables) if ghost else None
+                ghost_lines = session.app.services.ghost(ghost.evaluation.variables) if ghost else None
             except HpsopError as error:
                 session.notify("No geometry for this design", str(error), "yellow")
                 return
             before, self._geometry = self._geometry, geometry
             with self._client.atomic():
-                self._draw_ship(geometry, ghost_geometry)
+                self._draw_ship(geometry, ghost_lines)
             self._client.flush()
             self._drawn = state
             self.shown_design = shown.design_id if shown.design_id is not None else shown.kind
@@ -95,17 +101,20 @@ class SceneView:
                 self.place_camera()
         self._spin()
 
-    def _draw_ship(self, geometry: SceneGeometry, ghost: SceneGeometry | None) -> None:
+    def _draw_ship(self, geometry: SceneGeometry, ghost: np.ndarray | None) -> None:
         options = self._session.options
         close_up = options.camera == "propeller"
-        self._mesh("underwater", "/ship/underwater", *geometry.underwater, color=UNDERWATER)
+        self._mesh(
+            "underwater", "/ship/underwater", *geometry.underwater, color=UNDERWATER, visible=not options.pressure
+        )
         self._mesh("topsides", "/ship/topsides", *geometry.topsides, color=TOPSIDES, visible=options.topsides)
         frame = self._handles.get("propeller frame")
         if frame is None:
             frame = self._client.scene.add_frame("/ship/propeller", show_axes=False)
             self._handles["propeller frame"] = frame
         frame.position = geometry.propeller_position
-        self._mesh("propeller", "/ship/propeller/blades", *geometry.propeller, color=BRONZE)
+        self._mesh("blades", "/ship/propeller/blades", *geometry.blades, color=BRONZE, visible=not options.pressure)
+        self._mesh("hub", "/ship/propeller/hub", *geometry.hub, color=HUB)
         self._lines("waterline", "/ship/waterline", geometry.waterline, WATERLINE)
         self._mesh(
             "water",
@@ -116,14 +125,10 @@ class SceneView:
             visible=options.water and not close_up and not options.waves,
         )
         if ghost is not None:
-            self._mesh("ghost", "/ghost/underwater", *ghost.underwater, color=GHOST, opacity=0.35)
-            self._mesh("ghost top", "/ghost/topsides", *ghost.topsides, color=GHOST, opacity=0.22)
+            self._lines("ghost", "/ghost", ghost, GHOST)
             self._handles["ghost"].visible = True
-            self._handles["ghost top"].visible = options.topsides
-        else:
-            for name in ("ghost", "ghost top"):
-                if name in self._handles:
-                    self._handles[name].visible = False
+        elif "ghost" in self._handles:
+            self._handles["ghost"].visible = False
 
     def _mesh(
         self,
@@ -158,7 +163,7 @@ class SceneView:
 
     def _lines(self, key: str, name: str, points: np.ndarray, color: tuple[int, int, int]) -> None:
         handle = self._handles.get(key)
-        segments = np.stack([points[:-1], points[1:]], axis=1).astype(np.float32)
+        segments = (points if points.ndim == 3 else np.stack([points[:-1], points[1:]], axis=1)).astype(np.float32)
         if handle is not None and handle.points.shape == segments.shape:
             handle.points = segments
             return

@@ -1,0 +1,102 @@
+"""Waves on the water and pressures on hull and blades, at the chosen condition, with their legends."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from typing import Any
+
+import numpy as np
+import trimesh
+import viser
+
+from explorer.scene.colours import pressure_colours, pressure_legend, sea_colours, sea_legend
+from explorer.scene.pressure import PressureMap
+from explorer.scene.waves import wave_mesh
+from explorer.state import Session, Shown
+from hpsop_core.errors import HpsopError
+
+
+class OverlayView:
+    """Draws what is asked for and takes it away again; each map is computed once a design and condition."""
+
+    def __init__(self, session: Session, client: viser.ClientHandle) -> None:
+        self._session = session
+        self._client = client
+        self._nodes: dict[str, Any] = {}
+        self._drawn: dict[str, tuple[object, ...]] = {}
+        session.hub.on(("selection", "options"), self._ask)
+        self._ask()
+
+    def _ask(self) -> None:
+        self._session.heavy.latest("overlays", self.draw)
+
+    def draw(self) -> None:
+        """Bring the overlays to the session's selection and options."""
+        session = self._session
+        shown, options = session.selected, session.options
+        if shown is None or not shown.evaluation.conditions:
+            return
+        index = min(options.condition, len(shown.evaluation.conditions) - 1)
+        key = (shown.key, index, session.picture.case)
+        self._one("waves", options.waves, key, lambda: self._waves(shown, index))
+        self._one("pressure", options.pressure, key, lambda: self._pressure(shown, index))
+        self._one("blades", options.pressure, key, lambda: self._blades(shown, index))
+
+    def _one(self, name: str, wanted: bool, key: tuple[object, ...], make: Callable[[], None]) -> None:
+        session = self._session
+        if not wanted:
+            if name in self._drawn:
+                self._remove(name)
+            return
+        if self._drawn.get(name) == key:
+            return
+        session.legends[name] = f'<div class="soft">computing the {name} …</div>'
+        session.hub.changed("legend")
+        try:
+            make()
+            self._drawn[name] = key
+        except HpsopError as error:
+            self._remove(name)
+            session.notify(f"No {name} for this design", str(error), "yellow")
+        session.hub.changed("legend")
+
+    def _remove(self, name: str) -> None:
+        node = self._nodes.pop(name, None)
+        if node is not None:
+            node.remove()
+        self._drawn.pop(name, None)
+        self._session.legends.pop(name, None)
+        self._session.hub.changed("legend")
+
+    def _waves(self, shown: Shown, index: int) -> None:
+        field = self._session.app.services.waves(shown.evaluation, index)
+        hull = shown.evaluation.hull
+        if hull is None:
+            return
+        vertices, faces, heights = wave_mesh(field, hull.draft)
+        # The few highest crests at the bow must not wash out the rest.
+        reach = max(float(np.percentile(np.abs(heights), 97.0)), 0.05)
+        self._show("waves", "/waves", vertices, faces, sea_colours(heights, reach))
+        self._session.legends["waves"] = sea_legend(reach, f"{field.note}; true scale")
+
+    def _pressure(self, shown: Shown, index: int) -> None:
+        found = self._session.app.services.hull_pressure(shown.evaluation, index)
+        self._map("pressure", "/ship/pressure", found, "hull Cp [–]")
+
+    def _blades(self, shown: Shown, index: int) -> None:
+        found = self._session.app.services.blade_pressure(shown.evaluation, index)
+        if found is not None:
+            self._map("blades", "/ship/propeller/pressure", found, "blade Cp [–]")
+        else:
+            self._session.legends.pop("blades", None)
+
+    def _map(self, name: str, node: str, found: PressureMap, title: str) -> None:
+        low, high = (float(value) for value in np.percentile(found.coefficient, (2.0, 98.0)))
+        self._show(name, node, found.vertices, found.faces, pressure_colours(found.coefficient, low, high))
+        self._session.legends[name] = pressure_legend(title, low, high, found.note)
+
+    def _show(self, name: str, node: str, vertices: np.ndarray, faces: np.ndarray, colours: np.ndarray) -> None:
+        # Colours travel only with a whole mesh (GLB): replaced on selection, never during a drag.
+        alpha = np.full((len(colours), 1), 255, dtype=np.uint8)
+        mesh = trimesh.Trimesh(vertices, faces, vertex_colors=np.hstack([colours, alpha]), process=False)
+        self._nodes[name] = self._client.scene.add_mesh_trimesh(node, mesh, cast_shadow=False, receive_shadow=False)

@@ -1,0 +1,245 @@
+"""The page's main gestures with mouse and keyboard, one after another on one page and one small finished run."""
+
+from __future__ import annotations
+
+import math
+
+import numpy as np
+import pytest
+from conftest import front_marks, press, session_of, small_case, wait_until
+
+from explorer.app import Explorer
+from explorer.security import free_port
+
+
+@pytest.fixture(scope="module")
+def explorer(tmp_path_factory):
+    page = Explorer(
+        small_case(generations=5, level1_generations=5),
+        port=free_port("127.0.0.1", 8460),
+        folder=tmp_path_factory.mktemp("runs"),
+        workers=2,
+    )
+    page.services.start()
+    wait_until(lambda: page.state.picture.status == "finished", 90, "the small run")
+    yield page
+    page.close()
+
+
+@pytest.fixture(scope="module")
+def page(explorer, open_page):
+    return open_page(explorer)
+
+
+@pytest.fixture
+def session(explorer, page):
+    return session_of(explorer)
+
+
+def chart_point(page, fx: float, fy: float, chart: str = "pareto") -> tuple[float, float]:
+    """Screen coordinates of a fraction of a chart's plot area (upwards)."""
+    return tuple(
+        page.evaluate(
+            """([chart, fx, fy]) => {
+                const svg = document.querySelector(`svg[data-chart=${chart}]`);
+                const box = svg.getBoundingClientRect(), view = svg.viewBox.baseVal;
+                const [px, py, pw, ph] = svg.dataset.plot.split(',').map(Number);
+                return [box.x + (px + fx * pw) / view.width * box.width,
+                        box.y + (py + (1 - fy) * ph) / view.height * box.height];
+            }""",
+            [chart, fx, fy],
+        )
+    )
+
+
+def choose_tab(page, name: str) -> None:
+    page.get_by_role("tab", name=name).or_(page.get_by_text(name, exact=True)).first.click()
+
+
+def test_hover_shows_all_numbers_of_the_design(page, session):
+    x, y = front_marks(page)[-1]
+    page.mouse.move(x, y)
+    page.wait_for_function("() => document.querySelector('.hpsop-tip').style.display === 'block'")
+    text = page.locator(".hpsop-tip").inner_text()
+    assert text.startswith("Design ")
+    for word in ("Lpp", "CB", "KT₁", "PD₂", "η₀₂", "g₃"):
+        assert word in text
+    page.mouse.move(5, 5)
+    page.wait_for_function("() => document.querySelector('.hpsop-tip').style.display === 'none'")
+
+
+def test_keyboard_walks_along_the_front(page, session):
+    from explorer.charts.pareto import front_order
+
+    order = front_order(session.picture, None)
+    page.mouse.click(*front_marks(page)[0])
+    wait_until(lambda: session.selected.design_id in order, 20, "a front design")
+    page.keyboard.press("Home")
+    wait_until(lambda: session.selected.design_id == order[0], 20, "Home")
+    page.keyboard.press("ArrowRight")
+    wait_until(lambda: session.selected.design_id == order[min(1, len(order) - 1)], 20, "ArrowRight")
+    page.keyboard.press("End")
+    wait_until(lambda: session.selected.design_id == order[-1], 20, "End")
+    page.keyboard.press("ArrowLeft")
+    wait_until(lambda: session.selected.design_id == order[max(len(order) - 2, 0)], 20, "ArrowLeft")
+
+
+def test_wheel_zooms_drag_pans_and_double_click_shows_all(page, session):
+    page.mouse.move(*chart_point(page, 0.5, 0.5))
+    page.mouse.wheel(0, -200)
+    wait_until(lambda: "pareto" in session.limits, 20, "the zoom")
+    (a, b), _ = session.limits["pareto"]
+    x, y = chart_point(page, 0.5, 0.5)
+    page.mouse.down()
+    page.mouse.move(x + 40, y, steps=4)
+    page.mouse.up()
+    wait_until(lambda: session.limits["pareto"][0][0] < a - 1e-6, 20, "the pan")
+    (c, d), _ = session.limits["pareto"]
+    # a pan moves both limits by the same amount
+    assert math.isclose(d - c, b - a, rel_tol=1e-6)
+    page.mouse.dblclick(*chart_point(page, 0.95, 0.95))
+    wait_until(lambda: "pareto" not in session.limits, 20, "the whole chart")
+
+
+def test_box_filters_and_escape_clears(page, session):
+    x, y = chart_point(page, 0.02, 0.02)
+    page.mouse.move(x, y)
+    page.keyboard.down("Shift")
+    page.mouse.down()
+    page.mouse.move(*chart_point(page, 0.6, 0.6), steps=4)
+    page.mouse.up()
+    page.keyboard.up("Shift")
+    wait_until(lambda: {"f1", "f2"} <= set(session.filters), 20, "the box")
+    low, high = session.filters["f1"]
+    assert low < high
+    page.keyboard.press("Escape")
+    wait_until(lambda: not session.filters, 20, "Escape")
+
+
+def test_scrubber_steps_and_play(page, session):
+    press(page, "step", "-1")
+    wait_until(lambda: session.scrubbed == 4, 20, "the fourth generation")
+    press(page, "follow")
+    wait_until(lambda: session.scrubbed is None, 20, "the newest")
+    press(page, "play")
+    wait_until(lambda: session.scrubbed is not None and session.scrubbed >= 3, 20, "play")
+    press(page, "follow")
+    wait_until(lambda: session.scrubbed is None, 20, "the newest again")
+
+
+def test_brush_on_parallel_coordinates_filters(page, session):
+    choose_tab(page, "Charts")
+    press(page, "tab", "parallel")
+    page.wait_for_selector("svg[data-chart=parallel]")
+    x, y = chart_point(page, 0.0, 0.2, "parallel")
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(*chart_point(page, 0.0, 0.8, "parallel"), steps=4)
+    page.mouse.up()
+    wait_until(lambda: "length_to_breadth" in session.filters, 20, "the brush")
+    low, high = session.filters["length_to_breadth"]
+    # 0.2 and 0.8 of the bounds 6.5 .. 8.5; a pixel of the axis is about 0.015
+    assert abs(low - 6.9) < 0.06
+    assert abs(high - 8.1) < 0.06
+    page.mouse.click(*chart_point(page, 0.0, 0.5, "parallel"))
+    wait_until(lambda: "length_to_breadth" not in session.filters, 20, "the click that drops it")
+
+
+def test_every_chart_draws(page, session):
+    for name, chart in (
+        ("resistance", "resistance_total"),
+        ("thrust", "thrust"),
+        ("lines", "body_plan"),
+        ("convergence", "convergence"),
+        ("open_water", "open_water"),
+    ):
+        press(page, "tab", name)
+        page.wait_for_selector(f'svg[data-chart="{chart}"] path.line')
+    press(page, "tab", "failures")
+    page.wait_for_selector('[data-chart-tab="failures"]:has-text("No evaluation failed")')
+
+
+def test_pins_stand_side_by_side(page, session):
+    choose_tab(page, "Design")
+    press(page, "choose", "initial")
+    wait_until(lambda: session.selected.kind == "initial", 20, "the initial design")
+    press(page, "pin")
+    wait_until(lambda: len(session.pins) == 1, 20, "one pin")
+    press(page, "choose", "compromise")
+    wait_until(lambda: session.selected.kind == "run", 20, "the compromise")
+    press(page, "pin")
+    wait_until(lambda: len(session.pins) == 2, 20, "two pins")
+    choose_tab(page, "Compare")
+    page.wait_for_selector('[data-act="unpin"]')
+    heads = page.locator("table.numbers:visible th").all_inner_texts()
+    assert any(text.startswith("Design ") for text in heads)
+    assert "Initial design" in heads
+
+
+def test_what_if_answers_live(page, session):
+    choose_tab(page, "What-if")
+    before = session.selected
+    thumb = page.get_by_role("slider").filter(visible=True).last
+    # the topmost slider of the panel is L/B: found by its own label
+    label = page.locator("label:visible", has_text="L/B").last
+    box = label.bounding_box()
+    track = page.evaluate(
+        """(y) => { const found = [...document.querySelectorAll('.mantine-Slider-track')].filter(e => {
+            const r = e.getBoundingClientRect(); return r.width > 20 && Math.abs(r.y + r.height / 2 - y) < 16 && r.x > 600; });
+            const r = found[0].getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; }""",
+        box["y"] + box["height"] / 2,
+    )
+    del thumb
+    page.mouse.click(track[0] + 0.5 * track[2], track[1] + track[3] / 2)
+    wait_until(lambda: session.selected.kind == "whatif", 30, "a what-if design")
+    value = session.selected.evaluation.variables.length_to_breadth
+    # half of the slider's 5.5 .. 9.5
+    assert abs(value - 7.5) < 0.1
+    assert session.selected.evaluation.level == 1
+    assert value != before.evaluation.variables.length_to_breadth
+    assert session.selected.evaluation.variables.draft == pytest.approx(before.evaluation.variables.draft, abs=0.006)
+
+
+def test_waves_have_a_legend_in_metres(page, session, explorer):
+    press(page, "switch", "waves")
+    page.wait_for_selector('.hpsop-overlay-card:has-text("wave height [m]")')
+    client = explorer.server.get_clients()[session.client_id]
+    wait_until(lambda: client.scene.get_handle_by_name("/waves") is not None, 30, "the wave mesh")
+    press(page, "switch", "waves")
+    wait_until(lambda: "waves" not in session.legends, 20, "the waves to go")
+
+
+def test_bounds_by_keyboard_and_a_refused_value(page, session, explorer):
+    draft = explorer.state.draft
+    low, high = draft.value("bounds", "draft")
+    slider = page.locator(".mantine-Slider-thumb, [role=slider]").first
+    assert slider.count() == 1
+    settings = explorer.settings
+    # what a slider cannot send, a hostile browser can: each is refused and the draft stays
+    from hpsop_core.errors import InputError
+
+    for bad in ((15.0, 14.0), (math.nan, 14.5), (14.0, math.inf), (1.0, 99.0), "x", (14.0,), None):
+        with pytest.raises(InputError):
+            settings.set_bounds("draft", bad)
+    with pytest.raises(InputError):
+        settings.set_bounds("blade_count", (3.5, 5.0))
+    with pytest.raises(InputError):
+        settings.set_field("optimization", "population", math.nan)
+    assert draft.value("bounds", "draft") == (low, high)
+    settings.set_bounds("draft", (14.1, 14.4))
+    page.wait_for_selector('[data-variable="draft"]:has-text("14.10 … 14.40 m")')
+    settings.set_bounds("draft", (low, high))
+
+
+def test_reload_comes_back(page, session, explorer):
+    choose_tab(page, "Design")
+    press(page, "choose", "compromise")
+    wait_until(lambda: session.selected.kind == "run", 20, "the compromise")
+    wanted, pins = session.selected.design_id, len(session.pins)
+    page.reload()
+    page.wait_for_selector(f'[data-selected="{wanted}"]', state="attached")
+    fresh = session_of(explorer)
+    assert fresh is not session
+    assert fresh.selected.design_id == wanted
+    assert len(fresh.pins) == pins
+    assert np.isfinite(fresh.selected.evaluation.objectives["f1"])
