@@ -30,7 +30,7 @@ class HubSettings:
         rows_end: panels on each rounded end.
         panels_round: panels round the whole hub, shared by the blades (at least four a sector).
         cylinder_ahead, cylinder_behind, end_length: extent of the hub before, behind the root, and of its ends.
-        lean: how far, over the axial length of the root, the lines from its ends lean outwards.
+        lean: how far the lines from the root's edges lean forward and aft, over what a line square to the chord leans.
     """
 
     rows_cylinder: int = 3
@@ -39,7 +39,7 @@ class HubSettings:
     cylinder_ahead: float = 0.25
     cylinder_behind: float = 0.35
     end_length: float = 0.4
-    lean: float = 0.12
+    lean: float = 1.3
 
 
 @dataclass(frozen=True)
@@ -64,21 +64,6 @@ class HubGrid:
         return tuple(slice(int(a), int(b)) for a, b in itertools.pairwise(ends))
 
 
-def _chains(x: Array, theta: Array) -> tuple[IntArray, IntArray]:
-    """Indices of the closed root outline from its first to its last corner along the shaft: over back, over face."""
-    first, last = int(np.argmin(x)), int(np.argmax(x))
-    up = np.arange(first, first + (last - first) % x.size + 1) % x.size
-    down = np.arange(first, first - (first - last) % x.size - 1, -1) % x.size
-    middle = 0.5 * (x[first] + x[last])
-
-    def theta_at_middle(chain: IntArray) -> float:
-        # the chain crosses the middle once on any section that is not absurd; the last crossing is taken
-        after = int(np.flatnonzero(x[chain] > middle)[0])
-        return float(np.interp(middle, x[chain[after - 1 : after + 1]], theta[chain[after - 1 : after + 1]]))
-
-    return (up, down) if theta_at_middle(up) <= theta_at_middle(down) else (down, up)
-
-
 def hub_grid(blade: BladeGrid, blade_count: int, settings: HubSettings, wake_pitch: float) -> HubGrid:
     """The sector of the hub that belongs to the key blade.
 
@@ -93,15 +78,18 @@ def hub_grid(blade: BladeGrid, blade_count: int, settings: HubSettings, wake_pit
     """
     radius = float(blade.radius_edges[0])
     sector = 2.0 * np.pi / blade_count
-    # corner 0 and the last one are the trailing edge
-    x, theta = blade.x[:-1, 0], blade.theta[:-1, 0]
-    back, face = _chains(x, theta)
-    x_first, x_last = float(x[back[0]]), float(x[back[-1]])
-    theta_first, theta_last = float(theta[back[0]]), float(theta[back[-1]])
-    length = x_last - x_first
-    slope = (theta_last - theta_first) / length
-    # Half way round, the helix through the ends of the root outline, turned by half a sector.
-    lean = settings.lean * length
+    # corners 0 and n are the trailing edge, n/2 the leading edge
+    x, theta = blade.x[:, 0], blade.theta[:, 0]
+    count = x.size // 2
+    face, back = np.arange(count, -1, -1), np.arange(count, x.size)
+    x_first, x_last = float(x[count]), float(x[0])
+    length, turn = x_last - x_first, float(theta[0] - theta[count])
+    if length <= 0.0 or turn >= 0.0:
+        raise SolverFailure(STAGE, "the hub folds: the root section does not run downstream against the rotation")
+    # Half way round, the helix through both edges of the root section, turned by half a sector.
+    slope = turn / length
+    # Across the chord the outline leaves the leading edge at this slope; the lines must lean more.
+    lean = settings.lean * (radius * -turn / length) * (radius * 0.5 * sector)
     columns = max(2, round(settings.panels_round / blade_count / 2))
     fraction = np.arange(columns + 1) / columns
 
@@ -110,7 +98,7 @@ def hub_grid(blade: BladeGrid, blade_count: int, settings: HubSettings, wake_pit
         arc = np.hypot(np.diff(x[chain]), radius * np.diff(turned))
         place = np.concatenate([[0.0], np.cumsum(arc)]) / np.sum(arc)
         middle_x = x_first - lean + place * (length + 2.0 * lean)
-        middle_theta = theta_first + slope * (middle_x - x_first) + 0.5 * sector
+        middle_theta = theta[count] + slope * (middle_x - x_first) + 0.5 * sector
         share = fraction if from_face else 1.0 - fraction
         block_x = x[chain][:, None] + (middle_x - x[chain])[:, None] * share
         block_theta = turned[:, None] + (middle_theta - turned)[:, None] * share
@@ -126,19 +114,20 @@ def hub_grid(blade: BladeGrid, blade_count: int, settings: HubSettings, wake_pit
     for block_x, block_theta in ((face_x, face_theta), (back_x, back_theta)):
         if np.any(_plane_areas(block_x, radius * block_theta) <= 0.0):
             raise SolverFailure(STAGE, "the hub folds at the root section: a panel turns over")
-    step = length / (0.5 * x.size)
-    ahead = _stretched(settings.cylinder_ahead, step, settings.rows_cylinder)[:0:-1, None]
-    behind = _stretched(settings.cylinder_behind, step, settings.rows_cylinder)[1:, None]
+    step = length / count
+    cylinder_ahead, cylinder_behind = settings.cylinder_ahead + lean, settings.cylinder_behind + lean
+    ahead = _stretched(cylinder_ahead, step, settings.rows_cylinder)[:0:-1, None]
+    behind = _stretched(cylinder_behind, step, settings.rows_cylinder)[1:, None]
     quarter = 0.5 * np.pi * np.arange(1, settings.rows_end + 1)[:, None] / settings.rows_end
     end_radius = radius * np.cos(quarter)
     end_radius[-1] = 0.0
     ring_x = np.concatenate([face_x[[0, -1]], back_x[[0, -1]][:, 1:]], axis=1)
     ring_theta = np.concatenate([face_theta[[0, -1]], back_theta[[0, -1]][:, 1:]], axis=1)
-    nose = x_first - settings.cylinder_ahead - settings.end_length * np.sin(quarter)[::-1]
-    tail = x_last + settings.cylinder_behind + settings.end_length * np.sin(quarter)
+    nose = x_first - cylinder_ahead - settings.end_length * np.sin(quarter)[::-1]
+    tail = x_last + cylinder_behind + settings.end_length * np.sin(quarter)
     # The rings next to the root are bent like its lines; the bend dies out along the cylinder.
-    ahead_x = x_first - ahead + (1.0 - ahead / settings.cylinder_ahead) * (ring_x[0] - x_first)
-    behind_x = x_last + behind + (1.0 - behind / settings.cylinder_behind) * (ring_x[1] - x_last)
+    ahead_x = x_first - ahead + (1.0 - ahead / cylinder_ahead) * (ring_x[0] - x_first)
+    behind_x = x_last + behind + (1.0 - behind / cylinder_behind) * (ring_x[1] - x_last)
     round_ring = np.ones_like(ring_x[0])
     front_x = np.concatenate([nose * round_ring, ahead_x, ring_x[:1]])
     rear_x = np.concatenate([ring_x[1:], behind_x, tail * round_ring])

@@ -261,8 +261,7 @@ class KuttaProblem:
     def first_guess(self, weights: Array, terms: Array) -> Array:
         """(m,) jumps by Morino's linear condition on every strip."""
         matrix, right = self._linear(weights, terms)
-        result: Array = np.linalg.solve(matrix, right)
-        return result
+        return np.asarray(np.linalg.solve(matrix, right), dtype=np.float64)
 
     def solve(self, weights: Array, terms: Array, start: Array, label: str) -> Array:
         """The jumps (m,), by Newton's method.
