@@ -29,15 +29,16 @@ class HubSettings:
         rows_cylinder: panels on the cylinder before and behind the root, each.
         rows_end: panels on each rounded end.
         panels_round: panels round the whole hub, shared by the blades (at least four a sector).
-        cylinder_ahead, cylinder_behind, end_length: extent of the hub before, behind the root, and of its ends.
+        cylinder_ahead, cylinder_behind: the cylinder beyond the lines that lean out from the root. A boss of endless
+            length would raise KT of P4119 by 1 % at J = 0.7; end_length: of the rounded ends.
         lean: how far the lines from the root's edges lean forward and aft, over what a line square to the chord leans.
     """
 
     rows_cylinder: int = 3
     rows_end: int = 4
     panels_round: int = 18
-    cylinder_ahead: float = 0.25
-    cylinder_behind: float = 0.35
+    cylinder_ahead: float = 0.1
+    cylinder_behind: float = 0.2
     end_length: float = 0.4
     lean: float = 1.3
 

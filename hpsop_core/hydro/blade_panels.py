@@ -12,7 +12,7 @@ signs, what is neglected and the accuracy found: docs/theory-propeller-panels.md
 from __future__ import annotations
 
 from dataclasses import dataclass, field, replace
-from typing import Literal
+from typing import TYPE_CHECKING, Literal
 
 import numpy as np
 
@@ -39,6 +39,9 @@ from hpsop_core.hydro.blade_potential import KuttaProblem, SurfaceGradient, fact
 from hpsop_core.hydro.open_water import OpenWater, reynolds_number_07R
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.typing_aliases import Array, BoolArray
+
+if TYPE_CHECKING:
+    from hpsop_core.hydro.blade_pressure import CavitationMargin, SurfacePressure
 
 SOLVER = "blade panels 1"
 WAKE_PITCH_NODES = (0.6, 0.9, 1.2)
@@ -341,6 +344,27 @@ class BladePanelResult:
     wake_pitch_ratio: Array
     model: BladePanelModel
     drag: SectionDrag
+
+    def surface_pressure(self, advance_coefficient: float, all_blades: bool = True) -> SurfacePressure:
+        """Cp on blades and hub at any J; see ``blade_pressure.surface_pressure``."""
+        from hpsop_core.hydro.blade_pressure import surface_pressure
+
+        return surface_pressure(self, advance_coefficient, all_blades)
+
+    def cavitation_margin(
+        self,
+        advance_coefficient: float,
+        rotation_rate: float,
+        density: float,
+        pressure_margin_pascal: float,
+        gravity: float = 9.80665,
+    ) -> CavitationMargin:
+        """Least pressure against the vapour pressure; see ``blade_pressure.cavitation_margin``."""
+        from hpsop_core.hydro.blade_pressure import cavitation_margin
+
+        return cavitation_margin(
+            self, advance_coefficient, rotation_rate, density, pressure_margin_pascal, gravity
+        )
 
 
 def solve(
