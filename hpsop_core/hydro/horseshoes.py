@@ -32,8 +32,10 @@ class HorseshoeGrid:
         radii: radii of the strips, (M,).
         sections: sections at ``radii``.
         reference_advance: advance a radian of a wake at the geometric pitch of 0.7 R.
-        leg_x, leg_theta: trailing vortices on the blade, quarter chord to trailing edge, (M + 1, n).
-        control_x, control_theta: three-quarter-chord points, (M,).
+        chordwise: bound vortices on each strip, N; each stands at the quarter of its share of the chord.
+        leg_x, leg_theta: trailing vortices on the blade, from each bound vortex to the trailing edge, (N, M + 1, n).
+        control_fraction: fractions of the chord of the control points, the three quarters of the shares, (N,).
+        control_x, control_theta: control points, (M, N).
     """
 
     blade_count: int
@@ -42,13 +44,15 @@ class HorseshoeGrid:
     radii: Array
     sections: BladeSections
     reference_advance: float
+    chordwise: int
     leg_x: Array
     leg_theta: Array
+    control_fraction: Array
     control_x: Array
     control_theta: Array
 
     @staticmethod
-    def make(propeller: Propeller, strips: int) -> HorseshoeGrid:
+    def make(propeller: Propeller, strips: int, chordwise: int) -> HorseshoeGrid:
         """Half-cosine strips, dense at the tip; the hub is a plane of symmetry of the load, more or less."""
         hub = propeller.hub_ratio
         edges = hub + (1.0 - hub) * np.sin(0.5 * np.pi * np.arange(strips + 1) / strips)
@@ -57,7 +61,9 @@ class HorseshoeGrid:
         at_edges, sections = propeller.table.at(edges), propeller.table.at(radii)
         # A tip leg of no chord would leave the blade beside the last control point instead of behind it.
         edge_chord = 2.0 * np.maximum(at_edges.chord_ratio, sections.chord_ratio[-1])
-        along = edge_chord[:, None] * (-0.25 + 0.75 * np.linspace(0.0, 1.0, _CHORD_SEGMENTS + 1))
+        start = (np.arange(chordwise)[:, None] + 0.25) / chordwise
+        fraction = start + (1.0 - start) * np.linspace(0.0, 1.0, _CHORD_SEGMENTS + 1)
+        along = edge_chord[:, None] * (fraction[:, None, :] - 0.5)
         leg_x, leg_theta = cylinder_points(
             edges[:, None],
             at_edges.pitch_angle[:, None],
@@ -66,13 +72,15 @@ class HorseshoeGrid:
             along,
             np.zeros_like(along),
         )
+        control_fraction = (np.arange(chordwise) + 0.75) / chordwise
+        control_along = 2.0 * sections.chord_ratio[:, None] * (control_fraction - 0.5)
         control_x, control_theta = cylinder_points(
-            radii,
-            sections.pitch_angle,
-            sections.skew,
-            sections.rake_ratio,
-            0.5 * sections.chord_ratio,
-            np.zeros_like(radii),
+            radii[:, None],
+            sections.pitch_angle[:, None],
+            sections.skew[:, None],
+            sections.rake_ratio[:, None],
+            control_along,
+            np.zeros_like(control_along),
         )
         return HorseshoeGrid(
             blade_count=propeller.blade_count,
@@ -81,8 +89,10 @@ class HorseshoeGrid:
             radii=radii,
             sections=sections,
             reference_advance=propeller.pitch_diameter_ratio_07R / np.pi,
+            chordwise=chordwise,
             leg_x=leg_x,
             leg_theta=leg_theta,
+            control_fraction=control_fraction,
             control_x=control_x,
             control_theta=control_theta,
         )
@@ -94,29 +104,29 @@ class HorseshoeGrid:
 
 
 def normal_influence(grid: HorseshoeGrid, wake_advance: Array) -> Array:
-    """Normal velocity at the three-quarter-chord points of horseshoes of circulation 1 on all blades.
+    """Normal velocity at the control points of horseshoes of circulation 1 on all blades.
 
     Args:
         grid: the horseshoes.
         wake_advance: r tan(beta_i) of the wake, (K,).
 
     Returns:
-        (K, M, M): control point, then horseshoe; normal towards the suction side.
+        (K, M N, M N): control point, then horseshoe, each strip by strip; normal towards the suction side.
     """
-    control = to_cartesian(grid.control_x, grid.radii, grid.control_theta)
-    pitch = grid.sections.pitch_angle
-    axial, tangential = -np.cos(pitch), -np.sin(pitch)
-    normals = np.stack(
-        [axial, tangential * np.cos(grid.control_theta), -tangential * np.sin(grid.control_theta)], axis=-1
-    )
-    influence = np.zeros((wake_advance.size, grid.radii.size, grid.radii.size))
+    strips, chordwise = grid.control_x.shape
+    control = to_cartesian(grid.control_x, grid.radii[:, None], grid.control_theta).reshape(-1, 3)
+    axial, tangential = (np.repeat(-f(grid.sections.pitch_angle), chordwise) for f in (np.cos, np.sin))
+    theta = grid.control_theta.ravel()
+    normals = np.stack([axial, tangential * np.cos(theta), -tangential * np.sin(theta)], axis=-1)
+    count = strips * chordwise
+    influence = np.zeros((wake_advance.size, count, count))
     influence += _on_blade(grid, control, normals)
     wakes = _Wakes.make(grid)
     for node, advance in enumerate(wake_advance):
         legs = wakes.normal_velocity(grid, float(advance), control, normals)
         tail_axial, tail_tangential = wakes.tail(grid, float(advance))
         legs += tail_axial * axial + tail_tangential * tangential
-        influence[node] += (legs[1:] - legs[:-1]).T
+        influence[node] += np.repeat((legs[1:] - legs[:-1]).T, chordwise, axis=1)
     return influence
 
 
@@ -147,10 +157,10 @@ class _Wakes:
             # does.
             step = np.concatenate([[some[1] - some[0]], 0.5 * (some[2:] - some[:-2]), [some[-1] - some[-2]]])
             outward = np.sqrt(step / np.sin(np.minimum(step, 1.5)))
-            start_x.append(np.broadcast_to(grid.leg_x[:, -1:], shape).ravel())
+            start_x.append(np.broadcast_to(grid.leg_x[0, :, -1:], shape).ravel())
             angle.append(np.broadcast_to(some, shape).ravel())
             radius.append(np.broadcast_to(radii[:, None] * outward, shape).ravel())
-            theta.append((grid.leg_theta[:, -1:] + turn[:, None, None] - some).ravel())
+            theta.append((grid.leg_theta[0, :, -1:] + turn[:, None, None] - some).ravel())
             lengths += [some.size] * (turned.size * radii.size)
         first = np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64)
         return _Wakes(
@@ -163,41 +173,50 @@ class _Wakes:
         )
 
     def normal_velocity(self, grid: HorseshoeGrid, advance: float, control: Array, normals: Array) -> Array:
-        """Normal velocity of the wake legs of all blades less their images, (M + 1, M)."""
+        """Normal velocity of the wake legs of all blades less their images, (M + 1, M N)."""
         points = to_cartesian(self.start_x + advance * self.angle, self.radius, self.theta)
         velocity = polyline_normal_velocity(points, self.first, control, normals)
         legs = velocity.reshape(2, grid.blade_count, grid.edges.size, -1).sum(axis=1)
         return np.asarray(legs[0] - legs[1])
 
     def tail(self, grid: HorseshoeGrid, advance: float) -> tuple[Array, Array]:
-        """Axial and tangential velocity of what follows the last point of legs less images, two (M + 1, M)."""
-        distance = grid.leg_x[:, -1:] + advance * self.last_angle - grid.control_x
-        step = np.array(advance)
-        real = helix_tail_velocity(grid.radii, grid.edges[:, None], distance, step, grid.blade_count)
-        image = helix_tail_velocity(grid.radii, grid.image_edges[:, None], distance, step, grid.blade_count)
+        """Axial and tangential velocity of what follows the last point of legs less images, two (M + 1, M N)."""
+        distance = grid.leg_x[0, :, -1:] + advance * self.last_angle - grid.control_x.ravel()
+        step, radii = np.array(advance), np.repeat(grid.radii, grid.chordwise)
+        real = helix_tail_velocity(radii, grid.edges[:, None], distance, step, grid.blade_count)
+        image = helix_tail_velocity(radii, grid.image_edges[:, None], distance, step, grid.blade_count)
         return real[0] - image[0], real[1] - image[1]
 
 
 def _on_blade(grid: HorseshoeGrid, control: Array, normals: Array) -> Array:
-    """What does not depend on the wake: bound vortices and legs along the chords, with images; (M, M) as influence."""
-    blades = grid.blade_count
-    turn = 2.0 * np.pi * np.arange(blades)[:, None, None] / blades
-    edges = np.stack([grid.edges, grid.image_edges])[:, None, :, None]
-    theta = grid.leg_theta + turn
-    # (2, Z, M + 1, n, 3): real and image
-    legs = to_cartesian(grid.leg_x, edges, theta)
-    count = legs.shape[-2]
-    first = np.arange(2 * blades * grid.edges.size, dtype=np.int64) * count
-    along = polyline_normal_velocity(legs.reshape(-1, 3), first, control, normals)
-    along = along.reshape(2, blades, grid.edges.size, -1).sum(axis=1)
+    """What does not depend on the wake: bound vortices and legs along the chords, with images; (M N, M N)."""
+    blades, chordwise, rows, strips = grid.blade_count, grid.chordwise, grid.edges.size, grid.radii.size
+    turn = 2.0 * np.pi * np.arange(blades)[:, None, None, None] / blades
+    # Far legs need fewer points; (blades, N, M + 1, n, 3) each: the key blade, the other blades, images on all.
+    polylines = [
+        to_cartesian(grid.leg_x[..., ::stride], radii[:, None], grid.leg_theta[..., ::stride] + turned)
+        for radii, turned, stride in (
+            (grid.edges, turn[:1], 1),
+            (grid.edges, turn[1:], 2),
+            (grid.image_edges, turn, 4),
+        )
+    ]
+    points = np.concatenate([part.reshape(-1, 3) for part in polylines])
+    lengths = np.concatenate([np.full(part.size // (3 * part.shape[-2]), part.shape[-2]) for part in polylines])
+    first = np.concatenate([[0], np.cumsum(lengths)[:-1]]).astype(np.int64)
+    along = polyline_normal_velocity(points, first, control, normals)
+    along = along.reshape(2, blades, chordwise, rows, -1).sum(axis=1)
     along = along[0] - along[1]
-    # Bound vortices are one polyline of single segments: from edge to edge outwards, the image from the inside out too.
-    start = legs[:, :, :, 0]
-    outward = np.stack([start[:, :, :-1], start[:, :, 1:]], axis=3)
-    first = np.arange(2 * blades * grid.radii.size, dtype=np.int64) * 2
+    # Bound vortices from edge to edge outwards; an image from the inside out is the opposite of this order.
+    starts = [part[..., 0, :] for part in polylines]
+    start = np.stack([np.concatenate(starts[:2]), starts[2]])
+    outward = np.stack([start[..., :-1, :], start[..., 1:, :]], axis=-2)
+    first = np.arange(2 * blades * chordwise * strips, dtype=np.int64) * 2
     bound = polyline_normal_velocity(outward.reshape(-1, 3), first, control, normals)
-    bound = bound.reshape(2, blades, grid.radii.size, -1).sum(axis=1)
-    return np.asarray((along[1:] - along[:-1] + bound[0] - bound[1]).T)
+    bound = bound.reshape(2, blades, chordwise, strips, -1).sum(axis=1)
+    # (N, M, control points) to (control points, M N)
+    horseshoes = along[:, 1:] - along[:, :-1] + bound[0] - bound[1]
+    return np.asarray(horseshoes.transpose(2, 1, 0).reshape(-1, strips * chordwise))
 
 
 def induced_at_lifting_line(grid: HorseshoeGrid, wake_advance: Array) -> tuple[Array, Array]:

@@ -1,10 +1,11 @@
-"""Level 1 for the propeller: a lifting line with flow tangency at the three-quarter-chord point.
+"""Level 1 for the propeller: a lifting line whose circulation comes from flow tangency on the chord.
 
-Each blade is a row of horseshoe vortices: bound at the quarter chord, trailing along the chord to the trailing edge and
-then along a helix of one pitch. The circulations make the flow tangent to the zero-lift line at the three-quarter
-chord (Weissinger's condition), which replaces lifting-surface corrections; forces are Kutta-Joukowski's at the lifting
-line with the induced velocities in Wrench's closed form. The hub is an image vortex in its axis. Theory, what is
-neglected and the accuracy found: docs/theory-lifting-line.md.
+Each strip of a blade carries two bound vortices, at 1/8 and 5/8 of its chord; their legs trail along the chord to the
+trailing edge and then along a helix of one pitch. The circulations make the flow tangent to the camber line at 3/8 and
+7/8 of the chord (Weissinger's condition, twice), with the velocity that the blades' thickness induces there; this
+replaces every lifting-surface correction. Forces are Kutta-Joukowski's at the lifting line with the induced velocities
+in Wrench's closed form. The hub is an image vortex in its axis. Theory, what is neglected and the accuracy found:
+docs/theory-lifting-line.md.
 
 The flow is linear in the advance speed for a given wake pitch, and smooth in that pitch: one table over the pitch holds
 the solution for every advance coefficient, and one scalar equation aligns the wake. The prepared table answers any
@@ -20,18 +21,45 @@ import numpy as np
 
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.geometry.propeller import Propeller
-from hpsop_core.geometry.propeller_sections import IDEAL_ANGLE_PER_CAMBER, ZERO_LIFT_ANGLE_PER_CAMBER
+from hpsop_core.geometry.propeller_sections import (
+    IDEAL_ANGLE_PER_CAMBER,
+    IDEAL_LIFT_PER_CAMBER,
+    MEAN_LINE_LOADING,
+    ZERO_LIFT_ANGLE_PER_CAMBER,
+)
 from hpsop_core.geometry.radial_table import BladeSections
+from hpsop_core.hydro.blade_thickness import thickness_normal_velocity
 from hpsop_core.hydro.horseshoes import HorseshoeGrid, induced_at_lifting_line, normal_influence
 from hpsop_core.hydro.open_water import OpenWater, reynolds_number_07R
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.typing_aliases import Array
 
-SOLVER = "lifting line 1.0"
-CAMBER_EFFECTIVENESS = 0.907
+SOLVER = "lifting line 1.1"
+CAMBER_EFFECTIVENESS = 0.848
 """The one lift factor, fitted on the open-water test of P4119 alone (docs/theory-lifting-line.md)."""
 
 _STAGE = "lifting_line"
+
+
+def _two_vortex_slopes() -> tuple[float, float]:
+    """Slopes at 3/8 and 7/8 of the chord, for f/c = 1, that give two bound vortices the lift and the moment of a = 0.8.
+
+    In two dimensions at the ideal angle: the load is even to 0.8 c and falls to nothing at the trailing edge, so its
+    centre is at 0.4519 c, which shares it between vortices at 1/8 and 5/8.
+    """
+    a = MEAN_LINE_LOADING
+    centre = (0.5 * a**2 + 0.5 * (1.0 - a) * (a + (1.0 - a) / 3.0)) / (0.5 * (1.0 + a))
+    rear = (centre - 0.125) / 0.5
+    front = 1.0 - rear
+    scale = 0.5 * IDEAL_LIFT_PER_CAMBER / (2.0 * np.pi)
+    forward = IDEAL_ANGLE_PER_CAMBER - scale * (front / 0.25 - rear / 0.25)
+    aft = IDEAL_ANGLE_PER_CAMBER - scale * (front / 0.75 + rear / 0.25)
+    return float(forward), float(aft)
+
+
+_CAMBER_SLOPES = {1: (ZERO_LIFT_ANGLE_PER_CAMBER,), 2: _two_vortex_slopes()}
+"""Effective slopes of the mean line at the control points for f/c = 1, by the number of bound vortices."""
+
 _ROTATION = 2.0 * np.pi
 _TOLERANCE = 1.0e-12
 _ITERATIONS = 40
@@ -43,13 +71,15 @@ class LiftingLineSettings:
 
     Attributes:
         strips: radial strips on a blade.
-        camber_effectiveness: share of the potential zero-lift angle that a viscous section keeps; not used where the
-            drag is inviscid.
+        chordwise: bound vortices on each strip, 1 or 2.
+        camber_effectiveness: share of its camber that a blade with a boundary layer keeps; not used where the drag is
+            inviscid.
         wake_nodes: Chebyshev nodes of the table over the wake pitch.
         lowest_wake_pitch, highest_wake_pitch: range of that table, over the geometric pitch at 0.7 R.
     """
 
-    strips: int = 10
+    strips: int = 8
+    chordwise: int = 2
     camber_effectiveness: float = CAMBER_EFFECTIVENESS
     wake_nodes: int = 7
     lowest_wake_pitch: float = 0.42
@@ -250,27 +280,22 @@ def prepare(propeller: Propeller, settings: LiftingLineSettings = DEFAULT_SETTIN
         InputError: the settings make no grid.
         SolverFailure: the horseshoes of this geometry have no solution.
     """
-    if settings.strips < 4 or settings.wake_nodes < 4:
-        raise InputError("lifting line: at least 4 strips and 4 wake nodes are needed")
-    grid = HorseshoeGrid.make(propeller, settings.strips)
+    if settings.strips < 4 or settings.wake_nodes < 4 or settings.chordwise not in _CAMBER_SLOPES:
+        raise InputError("lifting line: at least 4 strips, at least 4 wake nodes and 1 or 2 bound vortices are needed")
+    grid = HorseshoeGrid.make(propeller, settings.strips, settings.chordwise)
     nodes = settings.wake_nodes
     position = np.cos(np.pi * (np.arange(nodes) + 0.5) / nodes)
     low, high = settings.lowest_wake_pitch, settings.highest_wake_pitch
     wake_advance = grid.reference_advance * (0.5 * (low + high) + 0.5 * (high - low) * position)
 
-    sections = grid.sections
-    effectiveness = np.array([1.0, settings.camber_effectiveness])
-    zero_lift = sections.pitch_angle[:, None] - (
-        effectiveness * ZERO_LIFT_ANGLE_PER_CAMBER * sections.camber_ratio[:, None]
-    )
-    onset = np.stack([np.cos(zero_lift), -_ROTATION * grid.radii[:, None] * np.sin(zero_lift)], axis=-1)
-    strips = settings.strips
+    onset = _onset(grid, propeller, settings)
+    count = onset.shape[0]
     try:
-        circulation = np.linalg.solve(
-            normal_influence(grid, wake_advance), np.broadcast_to(onset.reshape(strips, 4), (nodes, strips, 4))
-        )
+        bound = np.linalg.solve(normal_influence(grid, wake_advance), np.broadcast_to(onset, (nodes, count, 4)))
     except np.linalg.LinAlgError as error:
         raise SolverFailure(_STAGE, f"the horseshoes of this blade have no solution ({error})") from error
+    strips = settings.strips
+    circulation = bound.reshape(nodes, strips, settings.chordwise, 4).sum(axis=2)
     axial, tangential = induced_at_lifting_line(grid, wake_advance)
     flow = np.stack([circulation, axial @ circulation, tangential @ circulation], axis=1)
     if not np.all(np.isfinite(flow)):
@@ -282,6 +307,23 @@ def prepare(propeller: Propeller, settings: LiftingLineSettings = DEFAULT_SETTIN
     # The load's usual shape, fixed: weights from the solved load would be singular near zero thrust.
     weight = np.diff(grid.edges) * grid.radii * np.sqrt((1.0 - grid.radii) * (grid.radii - hub))
     return PreparedLiftingLine(propeller, settings, grid, weight / np.sum(weight), table)
+
+
+def _onset(grid: HorseshoeGrid, propeller: Propeller, settings: LiftingLineSettings) -> Array:
+    """Minus the normal velocity of the flow without circulation, (M N, 4).
+
+    The columns are (inviscid, viscous) x (unit advance speed, rotation).
+    """
+    sections = grid.sections
+    effectiveness = np.array([1.0, settings.camber_effectiveness])
+    slope = np.array(_CAMBER_SLOPES[settings.chordwise])
+    # (M, N, 2): pitch angle of the camber line at the control points
+    surface = sections.pitch_angle[:, None, None] - (
+        effectiveness * slope[:, None] * sections.camber_ratio[:, None, None]
+    )
+    onset = np.stack([np.cos(surface), -_ROTATION * grid.radii[:, None, None] * np.sin(surface)], axis=-1)
+    onset -= thickness_normal_velocity(propeller, grid.radii, grid.control_fraction)[:, :, None, :]
+    return np.asarray(onset.reshape(-1, 4))
 
 
 def solve(

@@ -10,7 +10,7 @@ import numpy as np
 from hpsop_core.errors import InputError
 from hpsop_core.typing_aliases import Array
 
-OFF_DESIGN_FACTOR = 6.8
+OFF_DESIGN_FACTOR = 6.7
 """k in Cd = Cd0 (1 + k (CL - CLi)^2), fitted on the open-water test of P4119 alone (docs/theory-lifting-line.md)."""
 
 _FLATTEST_REYNOLDS_NUMBER = (20.0 / 0.044) ** 2

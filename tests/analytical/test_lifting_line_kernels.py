@@ -2,11 +2,17 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 
+from hpsop_core.geometry.propeller import load_propeller, propeller_family
+from hpsop_core.geometry.propeller_sections import ZERO_LIFT_ANGLE_PER_CAMBER, half_thickness
 from hpsop_core.geometry.propeller_surface import to_cartesian
+from hpsop_core.hydro.blade_thickness import thickness_normal_velocity
 from hpsop_core.hydro.helical_vortices import helix_tail_velocity, polyline_normal_velocity, wrench_velocities
+from hpsop_core.hydro.lifting_line import _CAMBER_SLOPES
 from hpsop_core.typing_aliases import Array
 from hpsop_core.validation.propeller_level1 import elliptic_wing
 
@@ -85,3 +91,44 @@ def test_elliptic_wing(aspect: float) -> None:
     assert drag == pytest.approx(1.0 / (np.pi * aspect), rel=0.01)
     # constant downwash CL/(pi A), but for the outermost strips
     assert np.allclose(downwash[2:-2], 1.0 / (np.pi * aspect), rtol=0.01)
+
+
+def test_two_bound_vortices_keep_lift_and_moment_of_the_mean_line() -> None:
+    """In two dimensions, at no incidence: lift 2 pi times the zero-lift angle, for one vortex and for two."""
+    for count, slopes in _CAMBER_SLOPES.items():
+        vortex = (np.arange(count) + 0.25) / count
+        control = (np.arange(count) + 0.75) / count
+        # downwash of circulation 1 on chord 1, U = 1: 1/(2 pi distance)
+        influence = 1.0 / (2.0 * np.pi * (control[:, None] - vortex))
+        lift = 2.0 * float(np.sum(np.linalg.solve(influence, -np.array(slopes))))
+        # the published angles are rounded to four digits
+        assert lift == pytest.approx(-2.0 * np.pi * ZERO_LIFT_ANGLE_PER_CAMBER, rel=1e-3)
+        flat = 2.0 * float(np.sum(np.linalg.solve(influence, np.ones(count))))
+        assert flat == pytest.approx(2.0 * np.pi, rel=1e-12)
+
+
+def test_thickness_turns_the_flow_towards_less_incidence() -> None:
+    """Linear in the thickness, nothing without it, more with more blades of the same shape."""
+    radii = 0.2 + 0.8 * np.sin(0.5 * np.pi * (np.arange(8) + 0.5) / 8)
+    middle = np.array([0.375, 0.875])
+    propeller = propeller_family(load_propeller(), 1.0, 3)
+    usual = thickness_normal_velocity(propeller, radii, middle)
+    half = replace(propeller, table=replace(propeller.table, thickness_ratio=0.5 * propeller.table.thickness_ratio))
+    assert np.allclose(thickness_normal_velocity(half, radii, middle), 0.5 * usual, rtol=1e-12, atol=1e-15)
+    # at J 0.8 it acts towards the pressure side all along the blade
+    total = usual @ np.array([1.6, 1.0])
+    assert np.all(total < 0.0)
+    six = replace(propeller, blade_count=6)
+    assert np.all(thickness_normal_velocity(six, radii, middle) @ np.array([1.6, 1.0]) < total)
+
+
+def test_thickness_of_a_far_blade_is_a_known_source() -> None:
+    """A closed body has no net source; its far field is the dipole of its volume times the speed along the chord."""
+    angle = np.pi * np.arange(25) / 24
+    fraction = 0.5 * (1.0 - np.cos(0.5 * (angle[1:] + angle[:-1])))
+    growth = np.diff(2.0 * half_thickness(0.5 * (1.0 - np.cos(angle))))
+    x = np.linspace(0.0, 1.0, 20001)
+    area = 2.0 * float(np.mean(half_thickness(x)[1:] + half_thickness(x)[:-1])) * 0.5
+    assert float(np.sum(growth)) == pytest.approx(0.0, abs=1e-12)
+    # integration by parts: int x t' = -int t; 24 stations at their cosine middles
+    assert -float(np.sum(growth * fraction)) == pytest.approx(area, rel=0.01)

@@ -14,10 +14,10 @@ def test_inviscid_thrust_and_torque() -> None:
     rows = reference_rows("p4119_propan.csv")
     advance, kt, kq = (np.array([float(row[key]) for row in rows]) for key in ("J", "KT_blade_inv", "10KQ_blade_inv"))
     result = lifting_line.solve(propeller_family(load_propeller(), 1.0, 3), advance, SectionDrag.inviscid())
-    # PROPAN's wake is rigid at the geometric pitch; ours is up to 18 % finer at J 0.5, worth 4 % there. A thin lifting
-    # line stands beside thick sections: 8 % over the working range, 0.012 and 0.018 at J 1.
-    working = advance <= 0.9
-    assert np.all(np.abs(result.thrust_coefficient / kt - 1.0)[working] < 0.08)
-    assert np.all(np.abs(10.0 * result.torque_coefficient / kq - 1.0)[working] < 0.08)
-    assert np.all(np.abs(result.thrust_coefficient - kt) < 0.018)
-    assert np.all(np.abs(10.0 * result.torque_coefficient - kq) < 0.021)
+    # PROPAN's wake is rigid at the geometric pitch; ours is 18 % finer at J 0.5, worth 4 % there. From J 0.8 on ours
+    # lifts more: two bound vortices lift 2 to 4 % more than our own panels, and those 2 to 6 % more than PROPAN's.
+    low = advance <= 0.75
+    assert np.all(np.abs(result.thrust_coefficient / kt - 1.0)[low] < 0.06)
+    assert np.all(np.abs(10.0 * result.torque_coefficient / kq - 1.0)[low] < 0.06)
+    assert np.all(np.abs(result.thrust_coefficient - kt) < 0.02)
+    assert np.all(np.abs(10.0 * result.torque_coefficient - kq) < 0.03)
