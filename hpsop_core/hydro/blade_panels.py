@@ -54,6 +54,8 @@ CROSS_FLOW_DISTANCE = (0.03, 0.08)
 """Distance from hub or tip, in local chords, between which the pressures of the Kutta condition come to include the
 flow across the chord (KuttaProblem); the first and the last strip take the linear condition."""
 
+_PITCH_TOLERANCE = 1e-8
+
 
 @dataclass(frozen=True)
 class BladePanelSettings:
@@ -179,13 +181,14 @@ class BladePanelModel:
         if self.settings.wake == "geometric_pitch":
             return _Condition(advance_coefficient, jumps(0.0, None), 0.0)
         low, high = float(self.wake_pitches[0]), float(self.wake_pitches[-1])
-        pitch = 0.5 * (float(self.wake_pitches[1]) + 2.0 * advance_coefficient)
-        pitch = min(max(pitch, low), high)
+        # where the wake of a usual propeller settles
+        blade_pitch = 2.0 * self.propeller.pitch_diameter_ratio_07R
+        pitch = min(max(0.62 * blade_pitch + 0.44 * 2.0 * advance_coefficient, low), high)
         jump = jumps(pitch, None)
         last: tuple[float, float] | None = None
         for _ in range(40):
             error = min(max(self._loaded_pitch(jump, pitch, advance_coefficient), low), high) - pitch
-            if abs(error) < 1e-9:
+            if abs(error) < _PITCH_TOLERANCE:
                 return _Condition(advance_coefficient, jump, pitch)
             slope = -1.0 if last is None or pitch == last[0] else (error - last[1]) / (pitch - last[0])
             last = (pitch, error)

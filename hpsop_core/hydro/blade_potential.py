@@ -207,22 +207,22 @@ class KuttaProblem:
     those on 80 x 24; equal pressures at the last collocation points would leave 3 to 5 %.
 
     Close to the tip the flow crosses round its edge from one side to the other, and beside the hub the edge of the
-    wake crosses hub panels; no jump makes the pressures equal there. `cross_flow_share` takes the part of the velocity
-    across the chord out of the pressures towards the ends, and the end strips themselves take Morino's linear condition
-    (the jump is the difference of the last potentials).
+    wake crosses hub panels; no jump makes the pressures equal there. Towards the ends the part of the velocity across
+    the chord is taken out of the pressures (`cross_flow_share` from 1, equal pressures, to 0, equal speeds along the
+    chord), and the end strips take Morino's linear condition (the jump is the difference of the last potentials).
 
     Attributes:
         surface: the lifting surface.
         stations: ((lower, upper), (lower, upper)) from the trailing edge.
         onset_difference: (m, b) upper minus lower potential at the last collocation points.
-        cross_flow_share: (m,) from 1, equal pressures, to 0, equal speeds along the chord.
+        weighting: (4 m, 3, 3) W of every side and strip: v . W v is the squared speed, across the chord in part.
         linear: (m,) bool, strips that take Morino's condition.
     """
 
     surface: StripSurface
     stations: tuple[tuple[_TrailingStation, _TrailingStation], ...]
     onset_difference: Array
-    cross_flow_share: Array
+    weighting: Array
     linear: BoolArray
 
     @classmethod
@@ -238,7 +238,8 @@ class KuttaProblem:
             )
             for k in range(2)
         )
-        return cls(body.surface, stations, potential[-1] - potential[0], cross_flow_share, linear)
+        weighting = np.concatenate([station.weighting(cross_flow_share) for pair in stations for station in pair])
+        return cls(body.surface, stations, potential[-1] - potential[0], weighting, linear)
 
     def wake_terms(self, wake_potential: Array) -> Array:
         """What the condition needs of unit jumps: (5, m, 3, m), linear in the wake potentials (n, m).
@@ -276,29 +277,26 @@ class KuttaProblem:
             SolverFailure: Newton's method does not converge.
         """
         linear_matrix, linear_right = self._linear(weights, terms)
-        signs = (1.0, -1.0)
-        sides, shares = [], []
-        for k, factor in enumerate((2.0, -1.0)):
-            for side in range(2):
-                station = self.stations[k][side]
-                sides.append((factor * signs[side], station.tangent @ weights, terms[2 * k + side]))
-                shares.append(station.weighting(self.cross_flow_share))
-        free = [np.einsum("ma,mab,mb->m", u, share, u) for u, share in zip(
-            [s.free @ weights for pair in self.stations for s in pair], shares, strict=True)]
-        head = -sum(side[0] * u for side, u in zip(sides, free, strict=True))
-        scale = float(np.max(free[1]))
+        sides = [station for pair in self.stations for station in pair]
+        # One row a side and strip: sum over rows of factor v . W v, with v = base + term jump.
+        factor = np.repeat([2.0, -2.0, -1.0, 1.0], self.linear.size)[:, None]
+        base = np.concatenate([station.tangent @ weights for station in sides])
+        free = [station.free @ weights for station in sides]
+        share = self.weighting
+        term = terms[:4].reshape(-1, 3, self.linear.size)
+        onset = np.concatenate(free)
+        speeds = np.sum(onset * (share @ onset[:, :, None])[:, :, 0], axis=1, keepdims=True)
+        scale = float(np.max(speeds))
+        head = np.sum((-factor * speeds).reshape(4, -1), axis=0)
         length = float(np.sqrt(scale))
         linear = self.linear
 
         def residual(jump: Array) -> tuple[Array, Array]:
-            value = head.copy()
-            jacobian = np.zeros((jump.size, jump.size))
-            for (factor, base, term), share in zip(sides, shares, strict=True):
-                velocity = base + term @ jump
-                weighted = np.einsum("mab,mb->ma", share, velocity)
-                value += factor * np.einsum("ma,ma->m", velocity, weighted)
-                jacobian += 2.0 * factor * np.einsum("ma,mak->mk", weighted, term)
-            value, jacobian = value / scale, jacobian / scale
+            velocity = base + term @ jump
+            weighted = factor * (share @ velocity[:, :, None])[:, :, 0]
+            value = (head + np.sum(weighted * velocity, axis=1).reshape(4, -1).sum(axis=0)) / scale
+            change = (weighted[:, None, :] @ term)[:, 0]
+            jacobian = change.reshape(4, jump.size, jump.size).sum(axis=0) * (2.0 / scale)
             value[linear] = (linear_matrix[linear] @ jump - linear_right[linear]) / length
             jacobian[linear] = linear_matrix[linear] / length
             return value, jacobian
@@ -306,7 +304,7 @@ class KuttaProblem:
         jump = np.asarray(start, dtype=np.float64)
         value, jacobian = residual(jump)
         for _ in range(_KUTTA_ITERATIONS):
-            norm = float(np.abs(value).max())
+            size = float(np.abs(value).max())
             try:
                 step = np.linalg.solve(jacobian, -value)
             except np.linalg.LinAlgError:
@@ -314,7 +312,7 @@ class KuttaProblem:
             part = 1.0
             for _ in range(8):
                 trial = residual(jump + part * step)
-                if float(np.abs(trial[0]).max()) < norm or norm < 1e-10:
+                if float(np.abs(trial[0]).max()) < size or size < 1e-10:
                     break
                 part *= 0.5
             jump = jump + part * step
