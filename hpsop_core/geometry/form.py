@@ -99,12 +99,17 @@ TABLE_POINTS = 97
 STRETCH_MARGIN = 1e-6
 
 
+# A parent whose volume can change by less than this at its own centre of buoyancy gives the centre up instead.
+LEAST_RANGE = 0.04
+
+
 @dataclass(frozen=True)
 class FormSolution:
-    """The shift found and whether it had to stop short of what was asked."""
+    """The shift found, whether it had to stop short of what was asked, and whether the centre is the asked one."""
 
     shift: LongitudinalShift
     clipped: bool
+    centre_held: bool = True
 
 
 class _HalfBody:
@@ -166,6 +171,10 @@ class FormSolver:
         )
         own = self._fixed + self._bodies[0].exact(0.0) + self._bodies[1].exact(0.0)
         self.volume, self.centre = float(own[0]), float(own[1] / own[0])
+        self.holds_centre = all(
+            self._newton(self.volume * (1.0 + sign * LEAST_RANGE), self.centre, np.zeros(2)) is not None
+            for sign in (-1.0, 1.0)
+        )
 
     def _newton(self, volume: float, centre: float, start: Array) -> Array | None:
         """Amplitudes on the splines, or None where no pair within the limits reaches the target."""
@@ -233,12 +242,16 @@ class FormSolver:
         """The shift for a volume and a centre of buoyancy in the parent's frame, clipped to what the form carries.
 
         Where the asked pair would compress sections to dx'/dx = 0.3, the volume is taken back towards the parent's at
-        the asked centre; where the centre alone is too far, it is taken back first.
+        the asked centre; where the centre alone is too far, it is taken back first. A parent that can hardly change
+        its volume at its own centre (``holds_centre`` is false: one half body has nothing to give) reaches the volume
+        and gives the centre up.
 
         Args:
             volume, centre: m3 and m from AP, in the parent's frame.
         """
         identity = LongitudinalShift(self.frame, 0.0, 0.0)
+        if not self.holds_centre:
+            return self._solve_volume(volume, centre)
         if abs(volume / self.volume - 1.0) < 1e-13 and abs(centre - self.centre) < 1e-13 * self.frame.length:
             return FormSolution(identity, False)
         zero = np.zeros(2)
@@ -255,6 +268,30 @@ class FormSolver:
             part = low
         pair = self._at_limit(volume, self.centre + part * (centre - self.centre))
         return FormSolution(self._checked(LongitudinalShift(self.frame, float(pair[0]), float(pair[1]))), True)
+
+    def _solve_volume(self, volume: float, centre: float) -> FormSolution:
+        """Both half bodies together, in a fixed ratio, until the volume is right; the centre falls where it falls."""
+        reach = np.array([min(-body.low, body.high) for body in self._bodies])
+
+        def at(part: float) -> float:
+            tables = [b.exact(float(a)) for b, a in zip(self._bodies, part * reach, strict=True)]
+            return float((self._fixed + tables[0] + tables[1])[0])
+
+        low, high = -1.0, 1.0
+        clipped = not at(low) <= volume <= at(high)
+        if clipped:
+            low = high = low if volume < at(low) else high
+        for _ in range(60):
+            middle = 0.5 * (low + high)
+            low, high = (middle, high) if at(middle) < volume else (low, middle)
+        if abs(volume / self.volume - 1.0) < 1e-13:
+            low = high = 0.0
+        amplitudes = 0.5 * (low + high) * reach
+        shift = self._checked(LongitudinalShift(self.frame, float(amplitudes[0]), float(amplitudes[1])))
+        totals = [b.exact(float(a)) for b, a in zip(self._bodies, amplitudes, strict=True)]
+        total = self._fixed + totals[0] + totals[1]
+        held = abs(float(total[1] / total[0]) - centre) < 1e-9 * self.frame.length
+        return FormSolution(shift, clipped, held)
 
     @staticmethod
     def _checked(shift: LongitudinalShift) -> LongitudinalShift:

@@ -239,14 +239,14 @@ class ParentHull:
         quadrature = self.quadrature
         shift = LongitudinalShift(self.shift_frame, 0.0, 0.0)
         warnings: tuple[str, ...] = ()
-        clipped = False
+        clipped, centre_held = False, True
         if displaced_volume is not None or buoyancy_centre_shift != 0.0:
             solver = self._form_solver
             volume = solver.volume
             if displaced_volume is not None:
                 volume = displaced_volume / (scale[0] * scale[1] * scale[2])
             solution = solver.solve(volume, solver.centre + buoyancy_centre_shift / scale[0])
-            shift, clipped = solution.shift, solution.clipped
+            shift, clipped, centre_held = solution.shift, solution.clipped, solution.centre_held
         measured = hydrostatics(quadrature, shift, scale, (length, breadth, draft))
         if clipped:
             asked = volume * scale[0] * scale[1] * scale[2]
@@ -254,6 +254,13 @@ class ParentHull:
                 f"form clipped at dx'/dx = {LEAST_STRETCH}: block coefficient {measured.block_coefficient:.4f} "
                 f"instead of {asked / (length * breadth * draft):.4f}, displaced volume "
                 f"{measured.displaced_volume:.0f} m3 instead of {asked:.0f} m3",
+            )
+        elif not centre_held:
+            own = self._form_solver.centre * scale[0] + buoyancy_centre_shift
+            moved = measured.longitudinal_centre_of_buoyancy - own
+            warnings = (
+                f"this hull cannot hold its centre of buoyancy while its volume changes: it lies {moved:+.3g} m "
+                "from the asked place",
             )
         return Hull(self, length, breadth, draft, shift, measured, clipped, warnings)
 

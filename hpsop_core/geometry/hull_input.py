@@ -16,6 +16,8 @@ from hpsop_core.typing_aliases import Array
 COLUMNS = ("station_x_m", "waterline_z_m", "half_breadth_m")
 UNITS = {"m": 1.0, "mm": 0.001, "cm": 0.01, "ft": 0.3048, "in": 0.0254}
 FEWEST_STATIONS, FEWEST_WATERLINES = 7, 5
+# Largest distance of a point from the fitted surface, as a part of the breadth; sound tables stay below 0.5 %.
+LARGEST_DEVIATION = 0.015
 STL_STATIONS, STL_WATERLINES, STL_ABOVE = 121, 33, 8
 
 
@@ -175,7 +177,23 @@ def parent_hull_from_offsets(path: Path | str, length: float, draft: float) -> P
     _checked_dimensions(path.name, length, draft)
     x, z, y, begins = _grid(path.name, _rows(path))
     _check_size(path.name, x, z, y, length, draft, begins)
-    return parent_from_table(HalfBreadths(path.name, x, z, y), length, draft)
+    parent = parent_from_table(HalfBreadths(path.name, x, z, y), length, draft)
+    _check_fit(parent, path.name, x, z, begins)
+    return parent
+
+
+def _check_fit(parent: ParentHull, name: str, x: Array, z: Array, begins: dict[float, int]) -> None:
+    """A half-breadth far off the smooth surface through its neighbours is a slip of the pen, not a hull."""
+    if parent.fit_report is None:
+        return
+    worst = max(parent.fit_report.patches, key=lambda patch: patch.max_m)
+    if worst.max_m > LARGEST_DEVIATION * parent.breadth:
+        station = float(x[np.argmin(np.abs(x - worst.max_at_x_m))])
+        level = int(np.argmin(np.abs(z - worst.max_at_z_m)))
+        raise InputError(
+            f"{name} row {begins[station] + level}: the point at station {station:g} m, waterline {z[level]:g} m lies "
+            f"{worst.max_m:.3g} m off the smooth surface through its neighbours; correct it or add stations there"
+        )
 
 
 def parent_hull_from_stl(path: Path | str, unit: str, draft: float, length: float) -> ParentHull:

@@ -73,6 +73,8 @@ CASES: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
         lambda lines: [line if not line.startswith("50.00") else line.rsplit(",", 1)[0] + ",0" for line in lines],
         r"station 50 m has no breadth below the draft",
     ),
+    # 3.1 m where the neighbours have 4.9 m: row 1 is the header, station 50 m begins in row 47.
+    "slip of the pen": (_replaced(50, "50.00,3.00,1.10"), r"row 50: .* off the smooth surface"),
     "shifted": (_shifted, r"aft perpendicular is at x = 0"),
 }
 

@@ -1,0 +1,83 @@
+"""Users' hulls of simple shapes with closed-form volumes: box, ellipsoid, wedge with an immersed transom."""
+
+from __future__ import annotations
+
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hpsop_core.geometry.hull import ParentHull
+from hpsop_core.geometry.hull_input import parent_hull_from_offsets
+from hpsop_core.geometry.hull_mesh import hull_mesh, underwater_mesh
+
+LENGTH = 60.0
+
+
+def fitted(
+    folder: Path, stations: np.ndarray, heights: np.ndarray, shape: Callable[[float, float], float], draft: float
+) -> ParentHull:
+    rows = [f"{x:.6f},{z:.6f},{max(shape(x, z), 0.0):.6f}" for x in stations for z in heights]
+    path = folder / "shape.csv"
+    path.write_text("station_x_m,waterline_z_m,half_breadth_m\n" + "\n".join(rows) + "\n")
+    return parent_hull_from_offsets(path, LENGTH, draft)
+
+
+def test_box_barge_keeps_flat_ends_and_chines(tmp_path: Path) -> None:
+    parent = fitted(tmp_path, np.linspace(0.0, LENGTH, 21), np.linspace(0.0, 5.0, 11), lambda x, z: 6.0, 3.0)
+    hydro = parent.hydrostatics
+    # The chine is rounded by the bicubic section by a few centimetres: 0.1 % of the section.
+    assert hydro.displaced_volume == pytest.approx(60.0 * 12.0 * 3.0, rel=1e-3)
+    assert hydro.transverse_metacentric_radius == pytest.approx(12.0**2 / (12.0 * 3.0), rel=3e-3)
+    assert {("main", "first"), ("main", "last")} <= set(parent.caps)
+    hull = parent.transform(LENGTH, parent.breadth, 3.0)
+    assert hull_mesh(hull, "view").is_volume and underwater_mesh(hull, "view").is_volume
+    # A box has nothing to shift: it stays as it is and says so.
+    fuller = parent.transform(LENGTH, parent.breadth, 3.0, 1.05 * hydro.displaced_volume)
+    assert fuller.clipped and fuller.warnings
+    assert fuller.hydrostatics.displaced_volume == pytest.approx(hydro.displaced_volume, rel=1e-3)
+
+
+def test_ellipsoid_closes_between_stations(tmp_path: Path) -> None:
+    def half_breadth(x: float, z: float) -> float:
+        rest = 1.0 - (2.0 * x / LENGTH - 1.0) ** 2 - ((4.0 - z) / 4.0) ** 2
+        return 6.0 * float(np.sqrt(rest)) if rest > 0.0 else 0.0
+
+    parent = fitted(tmp_path, np.linspace(-0.5, LENGTH + 0.5, 62), np.linspace(0.0, 5.0, 26), half_breadth, 4.0)
+    # Half an ellipsoid; keel and ends lie between rows of the table, so half a cell is open: 0.5 %.
+    assert parent.hydrostatics.displaced_volume == pytest.approx(np.pi / 6.0 * 60.0 * 12.0 * 8.0 / 2.0, rel=5e-3)
+    assert parent.hydrostatics.longitudinal_centre_of_buoyancy == pytest.approx(30.0, abs=0.05)
+    assert parent.hydrostatics.vertical_centre_of_buoyancy == pytest.approx(4.0 - 3.0 / 8.0 * 4.0, abs=0.03)
+
+
+def test_immersed_transom_gives_the_centre_up(tmp_path: Path) -> None:
+    """The aft body is prismatic up to its transom: it has no volume to give, so the centre cannot be held."""
+    def half_breadth(x: float, z: float) -> float:
+        along = x / LENGTH
+        keel = 2.5 * max(0.0, (along - 0.75) / 0.25) ** 2
+        beam = 6.0 * (1.0 - max(0.0, (along - 0.4) / 0.6) ** 2.5)
+        return min(beam, (z - keel) * beam / 1.5) if z > keel else 0.0
+
+    parent = fitted(tmp_path, np.linspace(0.0, LENGTH, 31), np.linspace(0.0, 5.0, 21), half_breadth, 2.83)
+    assert ("main", "first") in parent.caps
+    own = parent.hydrostatics.displaced_volume
+    for ratio in (0.96, 1.04):
+        hull = parent.transform(LENGTH, parent.breadth, 2.83, ratio * own)
+        assert not hull.clipped
+        assert hull.hydrostatics.displaced_volume == pytest.approx(ratio * own, rel=1e-9)
+        assert "cannot hold its centre" in hull.warnings[0]
+    same = parent.transform(LENGTH, parent.breadth, 2.83, own)
+    assert same.hydrostatics.displaced_volume == pytest.approx(own, rel=1e-9)
+    assert not same.warnings
+
+
+def test_draft_between_waterlines(tmp_path: Path) -> None:
+    """A wedge-sided prism with pointed ends: volume to any draft in closed form."""
+    def half_breadth(x: float, z: float) -> float:
+        return (3.0 + z) * (1.0 - (2.0 * x / LENGTH - 1.0) ** 2)
+
+    parent = fitted(tmp_path, np.linspace(0.0, LENGTH, 31), np.linspace(0.0, 5.0, 11), half_breadth, 3.3)
+    exact = 2.0 * (3.0 * 3.3 + 3.3**2 / 2.0) * LENGTH * 2.0 / 3.0
+    # The corner between flat bottom and side is rounded a little by the fit.
+    assert parent.hydrostatics.displaced_volume == pytest.approx(exact, rel=2e-3)
