@@ -6,7 +6,7 @@ closed and sharp, the fillet at the root is in the meshes only.
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
@@ -15,14 +15,13 @@ from hpsop_core.geometry.nurbs import NurbsSurface
 from hpsop_core.geometry.propeller import Propeller
 from hpsop_core.geometry.propeller_hub import hub_of
 from hpsop_core.geometry.propeller_sections import cosine_chord_fractions
-from hpsop_core.geometry.propeller_surface import blade_points, finite_tip_sections
+from hpsop_core.geometry.propeller_surface import blade_points, finite_tip_sections, rotate_blade
 from hpsop_core.typing_aliases import Array
 
 _DEGREE = 3
 _ROOT_DEPTH = 0.9
 _SPAN_STATIONS = 49
 _CHORD_STATIONS = 33
-_HUB_STATIONS = 25
 
 
 @dataclass(frozen=True, eq=False)
@@ -80,22 +79,57 @@ def _interpolate(values: Array) -> tuple[Array, Array]:
 
 
 def hub_nurbs(propeller: Propeller) -> NurbsSurface:
-    """The hub from its forward face (open) to the tip of the boss cap, exactly round: u along the shaft, v round it."""
+    """The hub from its forward face (open) to the tip of the boss cap: u along the shaft, v round it, without error.
+
+    Chamfer, cylinder and elliptic cap are one conic each, the circle round the shaft is four.
+    """
     hub = hub_of(propeller)
-    quarter = np.sin(0.5 * np.pi * np.arange(_HUB_STATIONS) / (_HUB_STATIONS - 1))
-    cap = hub.cylinder_end + (hub.cap_x - hub.cylinder_end) * quarter
-    ahead = np.linspace(hub.face_x, hub.cylinder_start, 6)
-    x = np.concatenate([ahead, cap])
-    radius = hub.radius_at(x)
-    radius[-1] = 0.0
-    length = np.concatenate([[0.0], np.cumsum(np.hypot(np.diff(x), np.diff(radius)))])
-    knots_u = np.concatenate([[0.0], length / length[-1], [1.0]])
+    face_radius = float(hub.radius_at(np.array(hub.face_x)))
+    x = np.array(
+        [
+            hub.face_x,
+            0.5 * (hub.face_x + hub.cylinder_start),
+            hub.cylinder_start,
+            0.5 * (hub.cylinder_start + hub.cylinder_end),
+            hub.cylinder_end,
+            hub.cap_x,
+            hub.cap_x,
+        ]
+    )
+    radius = np.full(7, hub.radius)
+    radius[0], radius[-1] = face_radius, 0.0
+    along = np.array([1.0, 1.0, 1.0, 1.0, 1.0, np.sqrt(0.5), 1.0])
+    span = hub.cap_x - hub.face_x
+    first, second = (hub.cylinder_start - hub.face_x) / span, (hub.cylinder_end - hub.face_x) / span
+    knots_u = np.array([0, 0, 0, first, first, second, second, 1, 1, 1])
     # nine points of a square with weights 1 and sqrt(1/2) are a full circle (The NURBS Book, example 7.4)
     square = np.array([[0, 1], [1, 1], [1, 0], [1, -1], [0, -1], [-1, -1], [-1, 0], [-1, 1], [0, 1]], dtype=np.float64)
-    corner = np.where(np.arange(9) % 2 == 1, np.sqrt(0.5), 1.0)
+    around = np.where(np.arange(9) % 2 == 1, np.sqrt(0.5), 1.0)
     knots_v = np.array([0, 0, 0, 0.25, 0.25, 0.5, 0.5, 0.75, 0.75, 1, 1, 1])
-    control = np.zeros((x.size, 9, 3))
+    control = np.zeros((7, 9, 3))
     control[..., 0] = x[:, None]
     control[..., 1:] = radius[:, None, None] * square
-    weights = np.broadcast_to(corner, control.shape[:2]).copy()
-    return NurbsSurface(1, 2, knots_u, knots_v, control * (0.5 * propeller.diameter), weights)
+    weights = along[:, None] * around
+    return NurbsSurface(2, 2, knots_u, knots_v, control * (0.5 * propeller.diameter), weights)
+
+
+def propeller_surfaces(propeller: Propeller, placement: Array | None = None) -> dict[str, NurbsSurface]:
+    """All blades ("blade 1" is the key blade) and the "hub" as NURBS surfaces.
+
+    Args:
+        propeller: the propeller.
+        placement: a 4 x 4 matrix, for example ``propeller_placement(hull, propeller)``; None leaves propeller axes.
+    """
+    key = blade_nurbs(propeller).surface
+    blades = propeller.blade_count
+    surfaces = {
+        f"blade {k + 1}": replace(key, control_points=rotate_blade(key.control_points, k, blades))
+        for k in range(blades)
+    }
+    surfaces["hub"] = hub_nurbs(propeller)
+    if placement is None:
+        return surfaces
+    return {
+        name: replace(surface, control_points=surface.control_points @ placement[:3, :3].T + placement[:3, 3])
+        for name, surface in surfaces.items()
+    }

@@ -20,7 +20,7 @@ from hpsop_core.geometry.propeller_clearance import (
 )
 from hpsop_core.geometry.propeller_hub import hub_of
 from hpsop_core.geometry.propeller_mesh import propeller_mesh, propeller_view_parts
-from hpsop_core.geometry.propeller_nurbs import blade_nurbs, hub_nurbs
+from hpsop_core.geometry.propeller_nurbs import blade_nurbs, hub_nurbs, propeller_surfaces
 from hpsop_core.geometry.propeller_surface import key_blade
 
 
@@ -68,7 +68,7 @@ def test_blades_are_alike() -> None:
 
 
 def test_right_handed() -> None:
-    """Seen from astern a right-handed propeller turns clockwise: its top blade goes to starboard, leading edge first."""
+    """Seen from astern it turns clockwise: the top blade goes to starboard, leading edge first."""
     back, face = key_blade(propeller_family(load_propeller(), 2.0, 3), np.array([0.7]), np.array([0.0, 0.5, 1.0]))
     leading, trailing = back[0, 0], back[0, 2]
     # x downstream, y to starboard, z up: the top blade's leading edge is upstream and to starboard
@@ -106,11 +106,25 @@ def test_blade_nurbs_keeps_the_sections(blades: int, area: float) -> None:
     blade = blade_nurbs(propeller)
     # 0.2 mm on each metre of the diameter is finer than ISO 484 class S asks of a blade's sections
     assert blade.largest_deviation < 2e-4 * 9.0
-    hub = hub_nurbs(propeller)
-    points = hub.evaluate(np.linspace(0.0, 1.0, 40), np.linspace(0.0, 1.0, 33))
+    points = hub_nurbs(propeller).evaluate(np.linspace(0.0, 1.0, 40), np.linspace(0.0, 1.0, 33))
     radius = np.hypot(points[..., 1], points[..., 2])
-    assert np.ptp(radius, axis=1).max() < 1e-12
-    assert radius.max() == pytest.approx(0.2 * 4.5, rel=1e-9)
+    # conics: no error but rounding (whose root stands at the pole of the cap)
+    outline = 4.5 * hub_of(propeller).radius_at(points[:, 0, 0] / 4.5)
+    assert np.allclose(radius, outline[:, None], atol=1e-6)
+
+
+def test_surfaces_stand_where_the_mesh_stands() -> None:
+    hull = load_parent_hull().transform(355.0, 51.0, 14.5)
+    propeller = propeller_family(load_propeller(), 9.0, 4)
+    surfaces = propeller_surfaces(propeller, propeller_placement(hull, propeller))
+    assert sorted(surfaces) == ["blade 1", "blade 2", "blade 3", "blade 4", "hub"]
+    mesh = propeller_mesh(propeller, "export")
+    mesh.apply_transform(propeller_placement(hull, propeller))
+    for name, surface in surfaces.items():
+        points = surface.evaluate(np.linspace(0.3, 1.0, 9), np.linspace(0.0, 1.0, 9)).reshape(-1, 3)
+        # vertices of the export mesh are at most some 0.15 m apart, but the hub has none under the roots, 0.6 m thick
+        distance = np.min(np.linalg.norm(mesh.vertices[:, None] - points, axis=2), axis=0)
+        assert distance.max() < (0.35 if name == "hub" else 0.15), name
 
 
 def test_hub_stands_on_the_boss() -> None:
