@@ -1,6 +1,7 @@
 """Fits the shipped NURBS patches of the Duisburg Test Case from its offsets and its profile.
 
-    python -m hpsop_core.geometry.hull_fit_dtc --offsets OFFSETS.csv --profile PROFILE.csv --to assets/hulls/dtc.json
+    python -m hpsop_core.geometry.hull_fit_dtc --offsets assets/reference/dtc_offsets_fine.csv \\
+        --profile assets/reference/dtc_profile.csv --to assets/hulls/dtc.json
 
 Division (all borders are shared control points, so that neighbours meet exactly):
 
@@ -86,8 +87,8 @@ class DtcData:
         table = np.zeros((len(x), len(z)))
         table[np.searchsorted(x, rows[:, 0]), np.searchsorted(z, rows[:, 1])] = rows[:, 2]
         parts: dict[str, list[tuple[float, float]]] = {}
-        with profile.open(newline="") as handle:
-            for row in csv.DictReader(handle):
+        with profile.open(newline="", encoding="utf-8") as handle:
+            for row in csv.DictReader(line for line in handle if not line.startswith("#")):
                 parts.setdefault(row["part"], []).append((float(row["x_m"]), float(row["z_m"])))
         # The lowest row stands for the flat of bottom.
         z[0] = 0.0
