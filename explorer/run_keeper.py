@@ -76,8 +76,10 @@ class RunKeeper:
         self._event: RunEvent | None = None
         self._closed = threading.Event()
         self._guard = threading.RLock()
-        self._rows: dict[int, tuple[int, int, float, float, bool, bool, bool]] = {}
-        self._table: dict[int, list[float]] = {}
+        self._known: set[int] = set()
+        self._ids = np.zeros(0, dtype=np.int64)
+        self._rows = np.zeros((0, 7))
+        self._table = np.zeros((0, 0))
         self._quantities: tuple[Quantity, ...] = ()
         self._picture: RunPicture | None = None
         self._started_case = case
@@ -261,8 +263,6 @@ class RunKeeper:
             for item in reader.generations()
         )
         self._read_new(reader)
-        ids = np.array(sorted(self._rows), dtype=np.int64)
-        rows = [self._rows[int(number)] for number in ids]
         newest = reader.generation()
         snapshot = self._event.snapshot if self._event is not None else None
         total = snapshot.generations if snapshot is not None and snapshot.generations else _asked(reader)
@@ -275,16 +275,14 @@ class RunKeeper:
             status=status,
             message=message,
             live=self.driven,
-            ids=ids,
-            level=np.array([row[0] for row in rows], dtype=np.int64),
-            generation=np.array([row[1] for row in rows], dtype=np.int64),
-            objectives=np.array([row[2:4] for row in rows], dtype=float).reshape(-1, 2),
-            feasible=np.array([row[4] for row in rows], dtype=bool),
-            failed=np.array([row[5] for row in rows], dtype=bool),
-            by_hand=np.array([row[6] for row in rows], dtype=bool),
-            table=np.array([self._table[int(number)] for number in ids], dtype=float).reshape(
-                -1, len(self._quantities)
-            ),
+            ids=self._ids,
+            level=self._rows[:, 0].astype(np.int64),
+            generation=self._rows[:, 1].astype(np.int64),
+            objectives=self._rows[:, 2:4],
+            feasible=self._rows[:, 4] > 0.5,
+            failed=self._rows[:, 5] > 0.5,
+            by_hand=self._rows[:, 6] > 0.5,
+            table=self._table,
             columns=tuple(quantity.key for quantity in self._quantities),
             generations=generations,
             compromise=newest.compromise if newest is not None else None,
@@ -296,24 +294,37 @@ class RunKeeper:
 
     def _read_new(self, reader: RunReader) -> None:
         points = [*reader.archive(after=self._complete_until(reader)), *reader.archive(by_hand=True)]
-        for point in points:
-            if point.id in self._rows:
-                continue
+        fresh = [point for point in points if point.id not in self._known]
+        if not fresh:
+            return
+        rows, table = [], []
+        for point in fresh:
             f1, f2 = point.objectives if point.objectives is not None else (np.nan, np.nan)
-            self._rows[point.id] = (
-                point.level,
-                point.generation,
-                f1,
-                f2,
-                point.feasible,
-                point.objectives is None,
-                point.origin == "hand",
+            rows.append(
+                [
+                    point.level,
+                    point.generation,
+                    f1,
+                    f2,
+                    point.feasible,
+                    point.objectives is None,
+                    point.origin == "hand",
+                ]
             )
             evaluation = reader.designs([point.id])[0].evaluation
-            self._table[point.id] = [
-                np.nan if (value := quantity.value(evaluation)) is None else float(value)
-                for quantity in self._quantities
-            ]
+            table.append(
+                [
+                    np.nan if (value := quantity.value(evaluation)) is None else float(value)
+                    for quantity in self._quantities
+                ]
+            )
+            self._known.add(point.id)
+        # Fresh arrays each time: a picture that a view still draws from never changes under it.
+        ids = np.concatenate([self._ids, np.array([point.id for point in fresh], dtype=np.int64)])
+        order = np.argsort(ids, kind="stable")
+        self._ids = ids[order]
+        self._rows = np.concatenate([self._rows, np.array(rows, dtype=float)])[order]
+        self._table = np.concatenate([self._table.reshape(-1, len(self._quantities)), np.array(table)])[order]
 
     def _complete_until(self, reader: RunReader) -> int:
         """Ids up to here have all been read: those of finished generations that were pictured before."""

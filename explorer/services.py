@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import threading
+import time
 from pathlib import Path
 
 import numpy as np
@@ -19,11 +20,15 @@ from explorer.scene.geometry import SceneGeometry, ghost_segments, scene_geometr
 from explorer.scene.pressure import PressureMap, hull_pressure
 from explorer.scene.waves import WaveField, kelvin_waves, panel_waves
 from explorer.state import AppState
+from explorer.worker import LatestWorker
 from hpsop_core.case import Case
 from hpsop_core.design import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation import design_hull, design_propeller
 from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.runs.executor import default_workers
+
+_PICTURE_SECONDS = 0.25
 
 
 class Services:
@@ -47,6 +52,8 @@ class Services:
         self._pressure: Remembered[PressureMap] = Remembered(8)
         self.physics = Physics()
         self.asked_to_delete = ""
+        self._pictures = LatestWorker("pictures")
+        self._refreshed = 0.0
 
     def attach(self, app: AppState) -> None:
         """Tell this state what changes."""
@@ -71,8 +78,6 @@ class Services:
             stored = keeper.evaluation(level)
             if stored is not None and stored.level == level and stored.variables == self.case.initial.variables:
                 return stored
-            if level == 2:
-                return None
         return self.physics.initial(self.case, level)
 
     def evaluate(self, variables: DesignVariables, level: int) -> Evaluation:
@@ -206,10 +211,14 @@ class Services:
 
     def news(self) -> None:
         """Something of the run changed: make a new picture soon."""
-        if self._app is not None:
-            self._app.worker.latest("picture", self._refresh)
+        self._pictures.latest("picture", self._refresh)
 
     def _refresh(self) -> None:
+        # A search tells of every evaluation; eyes need a few pictures a second.
+        pause = self._refreshed + _PICTURE_SECONDS - time.monotonic()
+        if pause > 0.0:
+            time.sleep(pause)
+        self._refreshed = time.monotonic()
         keeper, app = self._keeper, self._app
         if keeper is None or app is None:
             return
@@ -267,6 +276,21 @@ class Services:
             raise InputError("there is no run")
         self._keeper.extend(generations)
 
+    @property
+    def workers(self) -> int:
+        """Processes of the next run."""
+        return self._workers or default_workers()
+
+    def set_workers(self, count: object) -> None:
+        """Processes of the next run.
+
+        Raises:
+            InputError: not a whole number from 1 to 64.
+        """
+        if isinstance(count, bool) or not isinstance(count, int | float) or not 1 <= count <= 64 or count != int(count):
+            raise InputError("workers: give a whole number from 1 to 64")
+        self._workers = int(count)
+
     def can_continue(self) -> bool:
         """Whether the run on display has generations left and can be driven."""
         keeper, app = self._keeper, self._app
@@ -309,5 +333,6 @@ class Services:
 
     def close(self) -> None:
         """Leave no process behind."""
+        self._pictures.close()
         if self._keeper is not None:
             self._keeper.close()

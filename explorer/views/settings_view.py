@@ -102,6 +102,7 @@ class SettingsView:
         self._readouts: dict[str, viser.GuiHtmlHandle] = {}
         self._sliders: dict[str, Any] = {}
         self._widgets: dict[tuple[str, str], Any] = {}
+        self._labels: dict[tuple[str, str], str] = {}
         with space:
             self._preset = gui.add_dropdown("Case", self._preset_names(), initial_value=app.draft.base.name)
             self._about = gui.add_html("")
@@ -203,6 +204,7 @@ class SettingsView:
         else:
             widget = self._gui.add_number(label, value, min=rule.lower, max=rule.upper, step=0.001, hint=hint)
         self._widgets[(section, name)] = widget
+        self._labels[(section, name)] = label
 
         def update(event: viser.GuiEvent[Any]) -> None:
             if event.client_id is None:
@@ -287,6 +289,10 @@ class SettingsView:
             f"<p><b>{escape(draft.base.title)}</b></p><p class='soft'>{lines}</p>{changed}{trouble}"
         )
         self._reset.visible = count > 0
+        for (section, name), widget in self._widgets.items():
+            label = self._labels[(section, name)] + (" ●" if draft.changed(section, name) else "")
+            if widget.label != label:
+                widget.label = label
         for quantity in VARIABLES:
             low, high = draft.value("bounds", quantity.key)
             factor = 100.0 if quantity.unit == "%" else 1.0

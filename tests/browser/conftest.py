@@ -18,7 +18,7 @@ from hpsop_core.case import Case, load_case
 
 pytestmark = pytest.mark.browser
 # Software graphics on a busy machine: the first mesh alone may stall a page for many seconds.
-PATIENCE = 90_000
+PATIENCE = 60_000
 _ARGUMENTS = [
     "--no-sandbox",
     "--disable-quic",
@@ -77,6 +77,8 @@ def open_page(chromium: Browser) -> Iterator[Callable[..., Page]]:
         page = context.new_page()
         page.set_default_timeout(PATIENCE)
         page.goto(explorer.address)
+        # viser's own notice about software graphics stands in the way of the mouse
+        page.add_style_tag(content=".mantine-Notifications-root{display:none!important}")
         page.wait_for_selector("svg[data-chart=pareto]")
         page.wait_for_selector('[data-selected="initial"]', state="attached")
         return page

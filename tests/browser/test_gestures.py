@@ -10,6 +10,7 @@ from conftest import front_marks, press, session_of, small_case, wait_until
 
 from explorer.app import Explorer
 from explorer.security import free_port
+from hpsop_core.errors import InputError
 
 
 @pytest.fixture(scope="module")
@@ -53,7 +54,7 @@ def chart_point(page, fx: float, fy: float, chart: str = "pareto") -> tuple[floa
 
 
 def choose_tab(page, name: str) -> None:
-    page.get_by_role("tab", name=name).or_(page.get_by_text(name, exact=True)).first.click()
+    page.get_by_role("tab", name=name, exact=True).first.click()
 
 
 def test_hover_shows_all_numbers_of_the_design(page, session):
@@ -179,17 +180,16 @@ def test_pins_stand_side_by_side(page, session):
 def test_what_if_answers_live(page, session):
     choose_tab(page, "What-if")
     before = session.selected
-    thumb = page.get_by_role("slider").filter(visible=True).last
     # the topmost slider of the panel is L/B: found by its own label
     label = page.locator("label:visible", has_text="L/B").last
     box = label.bounding_box()
     track = page.evaluate(
         """(y) => { const found = [...document.querySelectorAll('.mantine-Slider-track')].filter(e => {
-            const r = e.getBoundingClientRect(); return r.width > 20 && Math.abs(r.y + r.height / 2 - y) < 16 && r.x > 600; });
+            const r = e.getBoundingClientRect();
+            return r.width > 20 && Math.abs(r.y + r.height / 2 - y) < 16 && r.x > 600; });
             const r = found[0].getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; }""",
         box["y"] + box["height"] / 2,
     )
-    del thumb
     page.mouse.click(track[0] + 0.5 * track[2], track[1] + track[3] / 2)
     wait_until(lambda: session.selected.kind == "whatif", 30, "a what-if design")
     value = session.selected.evaluation.variables.length_to_breadth
@@ -209,15 +209,11 @@ def test_waves_have_a_legend_in_metres(page, session, explorer):
     wait_until(lambda: "waves" not in session.legends, 20, "the waves to go")
 
 
-def test_bounds_by_keyboard_and_a_refused_value(page, session, explorer):
+def test_bounds_and_refused_values(page, session, explorer):
     draft = explorer.state.draft
     low, high = draft.value("bounds", "draft")
-    slider = page.locator(".mantine-Slider-thumb, [role=slider]").first
-    assert slider.count() == 1
     settings = explorer.settings
     # what a slider cannot send, a hostile browser can: each is refused and the draft stays
-    from hpsop_core.errors import InputError
-
     for bad in ((15.0, 14.0), (math.nan, 14.5), (14.0, math.inf), (1.0, 99.0), "x", (14.0,), None):
         with pytest.raises(InputError):
             settings.set_bounds("draft", bad)
@@ -237,6 +233,7 @@ def test_reload_comes_back(page, session, explorer):
     wait_until(lambda: session.selected.kind == "run", 20, "the compromise")
     wanted, pins = session.selected.design_id, len(session.pins)
     page.reload()
+    page.add_style_tag(content=".mantine-Notifications-root{display:none!important}")
     page.wait_for_selector(f'[data-selected="{wanted}"]', state="attached")
     fresh = session_of(explorer)
     assert fresh is not session

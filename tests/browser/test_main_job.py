@@ -63,7 +63,7 @@ def test_start_three_generations_click_a_front_point(explorer, open_page):
     assert abs(radius - design_propeller(case, evaluation.variables).diameter / 2) < 0.01 * radius
 
     # curves: the open-water chart names this design and marks its own operating points
-    page.get_by_role("tab", name="Charts").or_(page.get_by_text("Charts", exact=True)).first.click()
+    page.get_by_role("tab", name="Charts", exact=True).click()
     page.wait_for_selector('[data-chart-tab="open_water"] svg')
     titles = " ".join(page.locator('svg[data-chart="open_water"] title').all_text_contents())
     assert f"Design {design_id}: J₁ {evaluation.conditions[0].advance_coefficient:.4f}" in titles
