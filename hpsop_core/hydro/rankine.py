@@ -39,6 +39,22 @@ from hpsop_core.hydro.rankine_resistance import plane_resistance, pressure_force
 from hpsop_core.hydro.rankine_settings import RankineSettings
 from hpsop_core.typing_aliases import Array
 
+__all__ = [
+    "DoubleBody",
+    "RankineCondition",
+    "RankineFields",
+    "RankineResult",
+    "RankineSettings",
+    "SurfaceSystem",
+    "double_body",
+    "normal_component",
+    "solve",
+    "solve_panels",
+    "solver_axes",
+    "surface_strengths",
+    "surface_system",
+]
+
 SOLVER_VERSION = "rankine-1"
 # Panels off their own plane by this part of their diagonal: on the plane itself the solid angle has two values.
 COLLOCATION_LIFT = 1e-5

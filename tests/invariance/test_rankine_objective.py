@@ -15,6 +15,7 @@ from hpsop_core.geometry.hull import Hull, load_parent_hull
 from hpsop_core.geometry.panels import hull_panels
 from hpsop_core.hydro import rankine
 from hpsop_core.hydro.rankine_grid import surface_grid
+from hpsop_core.validation.rankine_studies import latin_hypercube
 
 FROUDE_NUMBERS = (0.22, 0.27)
 
@@ -114,8 +115,9 @@ def test_single_precision_factor_is_not_felt(froude_number: float) -> None:
 
 
 def test_a_finer_mesh_ranks_designs_alike() -> None:
-    # Eight designs at the corners of the paper's bounds; `hpsop validate` ranks 30 and asks for .97 as well.
-    designs = [affine(a, b, d) for a in (6.5, 8.5) for b in (3.0, 4.5) for d in (14.0, 14.5)]
+    # Twelve designs inside the paper's bounds on a mesh with 60 % more unknowns; `hpsop validate` ranks 30 on three
+    # meshes. The issue asks for .97.
+    designs = [affine(*(float(value) for value in row)) for row in latin_hypercube(12, seed=7)]
     finer = rankine.RankineSettings().refined(1.3)
     coarse = np.array([wave_resistances(hull) for hull in designs])
     fine = np.array([wave_resistances(hull, finer) for hull in designs])
