@@ -11,6 +11,7 @@ signs, what is neglected and the accuracy found: docs/theory-propeller-panels.md
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
@@ -275,9 +276,7 @@ def rotating_onset(points: Array) -> Array:
     return onset
 
 
-def blade_panel_model(
-    propeller: Propeller, settings: BladePanelSettings, viscous: bool = False
-) -> BladePanelModel:
+def blade_panel_model(propeller: Propeller, settings: BladePanelSettings, viscous: bool = False) -> BladePanelModel:
     """Panel and factorise a propeller, with the camber that a viscous flow leaves if ``viscous``.
 
     Raises:
@@ -308,8 +307,18 @@ def blade_panel_model(
         raise SolverFailure(STAGE, "the potential of the wake is not finite")
     terms = np.stack([kutta.wake_terms(p) for p in potentials])
     return BladePanelModel(
-        propeller, settings, grid, hub, StripData.of(propeller, grid), onset_points, body.onset_potential,
-        wake_pitches, potentials, terms, kutta, body.row_sum_defect,
+        propeller,
+        settings,
+        grid,
+        hub,
+        StripData.of(propeller, grid),
+        onset_points,
+        body.onset_potential,
+        wake_pitches,
+        potentials,
+        terms,
+        kutta,
+        body.row_sum_defect,
     )
 
 
@@ -365,14 +374,20 @@ class BladePanelResult:
         """Least pressure against the vapour pressure; see ``blade_pressure.cavitation_margin``."""
         from hpsop_core.hydro.blade_pressure import cavitation_margin
 
-        return cavitation_margin(
-            self, advance_coefficient, rotation_rate, density, pressure_margin_pascal, gravity
-        )
+        return cavitation_margin(self, advance_coefficient, rotation_rate, density, pressure_margin_pascal, gravity)
+
+
+def forces_of(result: BladePanelResult, forces: Literal["circulation", "pressure"]) -> tuple[Array, Array]:
+    """(KT, KQ) at the J of ``result``, computed from circulations or pressures whatever its settings say."""
+    model = replace(result.model, settings=replace(result.model.settings, forces=forces))
+    values = [model.forces(model.condition(float(j)), result.drag) for j in result.open_water.advance_coefficient]
+    thrust, torque = np.array(values).reshape(-1, 2).T
+    return thrust, torque
 
 
 def solve(
     propeller: Propeller,
-    advance_coefficients: Array,
+    advance_coefficients: Array | Sequence[float],
     drag: SectionDrag,
     settings: BladePanelSettings | None = None,
 ) -> BladePanelResult:

@@ -114,7 +114,8 @@ def test_sphere_added_mass_and_speed() -> None:
 
 def test_images_are_rotations() -> None:
     """Three images in one call are three calls with turned points, and a strip sums its panels."""
-    panels = panel_set(np.concatenate([twisted_panel(), unit_square()]) + [0.2, 1.0, 0.3])
+    shift = np.array([0.2, 1.0, 0.3])
+    panels = panel_set(np.concatenate([twisted_panel() + shift, unit_square() + shift]))
     points = np.array([[0.5, 0.2, 1.4], [-0.3, -0.9, 0.2]])
     dipole, source = body_influence(points, panels, 3)
     parts = []
