@@ -13,7 +13,7 @@ from typing import TypedDict
 
 import numpy as np
 from scipy import linalg, sparse
-from scipy.interpolate import BSpline, CubicSpline, PchipInterpolator, make_interp_spline
+from scipy.interpolate import BSpline, PchipInterpolator, make_interp_spline
 
 from hpsop_core.geometry.nurbs import NurbsSurface, basis_matrix, clamped_knots, rising_spline_inverse
 from hpsop_core.typing_aliases import Array
@@ -315,8 +315,3 @@ def edge_segment(knots_v: Array, edge: Array, start: float, end: float, extra: A
 def knots_at(interior: Sequence[float]) -> Array:
     """Clamped cubic knot vector with the given interior knots."""
     return clamped_knots(list(interior), DEGREE)
-
-
-def smooth_table(x: Sequence[float], y: Sequence[float]) -> CubicSpline:
-    """A natural cubic through few points (guide lines of the fit)."""
-    return CubicSpline(np.asarray(x), np.asarray(y), bc_type="natural")

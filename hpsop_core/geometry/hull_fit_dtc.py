@@ -335,7 +335,7 @@ def fitted_hull(data: DtcData) -> dict[str, Any]:
                 {
                     "name": name,
                     "group": group,
-                    "deviation": {k: round(v, 6) for k, v in fit.summary().items()},
+                    "deviation": _rounded_summary(fit),
                     **_rounded(NurbsSurface.from_geomdl(surface).to_dict()),
                 }
             )
@@ -360,6 +360,19 @@ def fitted_hull(data: DtcData) -> dict[str, Any]:
         "girth": girth_under | girth_above,
         "along": {"topsides_mid": "main", "topsides_aft": "counter"},
         "patches": patches,
+    }
+
+
+def _rounded_summary(fit: PatchFit) -> dict[str, float]:
+    """Deviations to a thousandth of a millimetre."""
+    summary = fit.summary()
+    return {
+        "points": summary["points"],
+        "rms_m": round(summary["rms_m"], 6),
+        "p99_m": round(summary["p99_m"], 6),
+        "max_m": round(summary["max_m"], 6),
+        "max_at_x_m": summary["max_at_x_m"],
+        "max_at_z_m": summary["max_at_z_m"],
     }
 
 
