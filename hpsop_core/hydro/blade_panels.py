@@ -16,6 +16,7 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
+from threadpoolctl import threadpool_limits
 
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.geometry.propeller import Propeller
@@ -409,15 +410,17 @@ def solve(
     advance = np.atleast_1d(np.asarray(advance_coefficients, dtype=np.float64))
     if advance.ndim != 1 or not np.all(np.isfinite(advance)) or np.any(advance < 0.0):
         raise InputError("advance coefficients must be finite numbers of at least 0")
-    try:
-        model = blade_panel_model(propeller, settings, drag.viscous)
-    except SolverFailure:
-        if settings.chordwise_panels >= 40:
-            raise
-        finer = replace(settings, chordwise_panels=40, radial_panels=15)
-        model = blade_panel_model(propeller, finer, drag.viscous)
-    conditions = [model.condition(float(j)) for j in advance]
-    forces = np.array([model.forces(condition, drag) for condition in conditions]).reshape(-1, 2)
+    # One thread: the matrix is small, and the same bits must come out whatever runs beside.
+    with threadpool_limits(limits=1):
+        try:
+            model = blade_panel_model(propeller, settings, drag.viscous)
+        except SolverFailure:
+            if settings.chordwise_panels >= 40:
+                raise
+            finer = replace(settings, chordwise_panels=40, radial_panels=15)
+            model = blade_panel_model(propeller, finer, drag.viscous)
+        conditions = [model.condition(float(j)) for j in advance]
+        forces = np.array([model.forces(condition, drag) for condition in conditions]).reshape(-1, 2)
     if not np.all(np.isfinite(forces)):
         bad = advance[~np.all(np.isfinite(forces), axis=1)][0]
         raise SolverFailure(STAGE, f"the forces at J = {bad:g} are not finite")
