@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.metadata
 import platform
 import sqlite3
+import time
 from pathlib import Path
 from urllib.parse import quote
 
@@ -108,12 +109,26 @@ def connect_reader(path: Path) -> sqlite3.Connection:
     """
     if not path.is_file():
         raise InputError(f"{path}: no such run file; start one with 'hpsop optimize CASE --run {path}'")
-    address = f"file:{quote(str(path.resolve()))}?mode=ro"
-    if not path.with_name(path.name + "-wal").exists():
-        # Nobody has it open for writing. Without this flag SQLite would want to make side files for a WAL file, which
-        # fails in a read-only folder and leaves litter in any other.
-        address += "&immutable=1"
-    return sqlite3.connect(address, uri=True, timeout=10.0, isolation_level=None, check_same_thread=False)
+    attempts = 3
+    while True:
+        address = f"file:{quote(str(path.resolve()))}?mode=ro"
+        if not path.with_name(path.name + "-wal").exists():
+            # Nobody has it open for writing. Without this flag SQLite would want to make side files for a WAL file,
+            # which fails in a read-only folder and leaves litter in any other.
+            address += "&immutable=1"
+        connection = sqlite3.connect(address, uri=True, timeout=10.0, isolation_level=None, check_same_thread=False)
+        try:
+            connection.execute("PRAGMA schema_version").fetchone()
+            return connection
+        except sqlite3.OperationalError:
+            # The writer has just come or gone, between our look at its log and our opening of the file.
+            connection.close()
+            attempts -= 1
+            if attempts == 0:
+                raise
+            time.sleep(0.05)
+        except sqlite3.DatabaseError:
+            return connection  # no database at all: the caller asks and hears it again, with the words for people
 
 
 def schema_version(connection: sqlite3.Connection, path: Path) -> int:

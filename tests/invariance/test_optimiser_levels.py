@@ -43,7 +43,7 @@ def assert_level_2_begins_feasible(run: RunReader, level1: int) -> None:
 
 @pytest.mark.parametrize("seed", SEEDS)
 def test_level_2_begins_with_feasible_designs(tmp_path: Path, seed: int) -> None:
-    assert_level_2_begins_feasible(run_of(tmp_path, seed, population=8, generations=7, level1=6), level1=6)
+    assert_level_2_begins_feasible(run_of(tmp_path, seed, population=10, generations=13, level1=12), level1=12)
 
 
 @pytest.mark.soak
