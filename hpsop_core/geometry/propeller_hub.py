@@ -6,6 +6,7 @@ Lengths in tip radii, propeller axes (x downstream).
 from __future__ import annotations
 
 from dataclasses import dataclass
+from functools import lru_cache
 
 import numpy as np
 
@@ -119,6 +120,7 @@ def check_root_gap(propeller: Propeller) -> None:
         )
 
 
+@lru_cache(maxsize=64)
 def hub_of(propeller: Propeller) -> Hub:
     """The hub that carries the blades of a propeller: as long as the root sections with their fillets need."""
     radius = propeller.hub_ratio

@@ -74,14 +74,14 @@ class LiftingLineSettings:
         chordwise: bound vortices on each strip, 1 or 2.
         camber_effectiveness: share of its camber that a blade with a boundary layer keeps; not used where the drag is
             inviscid.
-        wake_nodes: Chebyshev nodes of the table over the wake pitch.
+        wake_nodes: Chebyshev nodes of the table over the logarithm of the wake pitch.
         lowest_wake_pitch, highest_wake_pitch: range of that table, over the geometric pitch at 0.7 R.
     """
 
     strips: int = 8
     chordwise: int = 2
     camber_effectiveness: float = CAMBER_EFFECTIVENESS
-    wake_nodes: int = 7
+    wake_nodes: int = 6
     lowest_wake_pitch: float = 0.42
     highest_wake_pitch: float = 1.65
 
@@ -129,9 +129,9 @@ class PreparedLiftingLine:
         settings: the settings.
         grid: the horseshoes.
         wake_weight: weights of the strips in the wake's mean pitch, sum 1, (M,).
-        table: Chebyshev coefficients over the wake pitch of circulation, axial and tangential velocity (axis 1) for
-            inviscid and viscous zero-lift angles (axis 3), for unit advance speed and for the rotation (axis 4):
-            (nodes, 3, M, 2, 2).
+        table: Chebyshev coefficients over the logarithm of the wake pitch of circulation, axial and tangential
+            velocity (axis 1), for inviscid and viscous camber (axis 3), for unit advance speed and for the rotation
+            (axis 4): (nodes, 3, M, 2, 2).
     """
 
     propeller: Propeller
@@ -185,8 +185,8 @@ class PreparedLiftingLine:
 
     def _evaluate(self, coefficients: Array, wake_pitch: Array) -> Array:
         """Circulation and induced velocities (nJ, 3, M) at a wake pitch for each J."""
-        low, high = self.settings.lowest_wake_pitch, self.settings.highest_wake_pitch
-        position = np.clip((2.0 * wake_pitch - low - high) / (high - low), -1.0, 1.0)
+        low, high = np.log(self.settings.lowest_wake_pitch), np.log(self.settings.highest_wake_pitch)
+        position = np.clip((2.0 * np.log(wake_pitch) - low - high) / (high - low), -1.0, 1.0)
         polynomials = np.cos(np.arange(self.settings.wake_nodes) * np.arccos(position)[:, None])
         flow = np.matmul(polynomials[:, None, :], coefficients)
         return np.asarray(flow).reshape(wake_pitch.size, 3, -1)
@@ -285,8 +285,9 @@ def prepare(propeller: Propeller, settings: LiftingLineSettings = DEFAULT_SETTIN
     grid = HorseshoeGrid.make(propeller, settings.strips, settings.chordwise)
     nodes = settings.wake_nodes
     position = np.cos(np.pi * (np.arange(nodes) + 0.5) / nodes)
-    low, high = settings.lowest_wake_pitch, settings.highest_wake_pitch
-    wake_advance = grid.reference_advance * (0.5 * (low + high) + 0.5 * (high - low) * position)
+    # in the logarithm of the pitch, because the induced velocities go like its inverse
+    low, high = np.log(settings.lowest_wake_pitch), np.log(settings.highest_wake_pitch)
+    wake_advance = grid.reference_advance * np.exp(0.5 * (low + high) + 0.5 * (high - low) * position)
 
     onset = _onset(grid, propeller, settings)
     count = onset.shape[0]
