@@ -108,6 +108,14 @@ class SettingsView:
             self._about = gui.add_html("")
             for section, name, label in search:
                 self.add_field(section, name, label)
+            self._workers = gui.add_number(
+                "Workers",
+                app.services.workers,
+                min=1,
+                max=64,
+                step=1,
+                hint="processes of a run; the result is the same",
+            )
             for quantity in VARIABLES:
                 self._add_slider(quantity)
             self._reset = gui.add_button("Reset changes to the preset", color="gray")
@@ -117,6 +125,7 @@ class SettingsView:
                     for section, name, label in fields:
                         self.add_field(section, name, label)
             self._save = gui.add_button("Save this case as TOML")
+        self._workers.on_update(self._on_workers)
         self._preset.on_update(self._on_preset)
         self._reset.on_click(self._on_reset)
         self._save.on_click(save)
@@ -258,6 +267,15 @@ class SettingsView:
                 self._app.draft.reset_all()
             self._show_all()
             self._app.tell_all("draft")
+
+    def _on_workers(self, event: viser.GuiEvent[Any]) -> None:
+        if event.client_id is None:
+            return
+        try:
+            self._app.services.set_workers(event.target.value)
+        except InputError as error:
+            self._refuse(event.client_id, str(error))
+            self._workers.value = self._app.services.workers
 
     def _on_reset(self, _event: viser.GuiEvent[Any]) -> None:
         with self._app.lock:

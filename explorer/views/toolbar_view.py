@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import io
 from typing import Any
 
 import viser
+from PIL import Image
 
 from explorer.bridge import PageEvent, overlay
 from explorer.quantities import number_text
@@ -125,10 +127,6 @@ class ToolbarView:
         except (TimeoutError, RuntimeError) as error:
             self._session.notify("No screenshot", str(error), "yellow")
             return
-        import io
-
-        from PIL import Image
-
         picture = io.BytesIO()
         Image.fromarray(image).save(picture, format="PNG")
         shown = self._session.selected

@@ -1,7 +1,7 @@
 """Fits the shipped NURBS patches of the Duisburg Test Case from its offsets and its profile.
 
-    python -m hpsop_core.geometry.hull_fit_dtc --offsets assets/reference/dtc_offsets_fine.csv \\
-        --profile assets/reference/dtc_profile.csv --to assets/hulls/dtc.json
+    python -m hpsop_core.geometry.hull_fit_dtc --offsets OFFSETS.csv \\
+        --profile PROFILE.csv --to assets/hulls/dtc.json
 
 Division (all borders are shared control points, so that neighbours meet exactly):
 
