@@ -75,9 +75,13 @@ class Hub:
 
 @dataclass(frozen=True)
 class ViewOptions:
-    """What of the design is drawn in 3D; belongs to a browser."""
+    """What of the design is drawn in 3D; belongs to a browser.
+
+    ``ghost_of`` is "initial" or the place of a pin, "0" to "3"; a pin that is gone means the initial design.
+    """
 
     ghost: bool = False
+    ghost_of: str = "initial"
     waves: bool = False
     pressure: bool = False
     spin: bool = False
