@@ -32,6 +32,7 @@ from hpsop_core.geometry.propeller_clearance import baseline_clearance, propelle
 from hpsop_core.hydro import cavitation
 from hpsop_core.hydro.interaction import thrust_deduction, wake_fraction
 from hpsop_core.hydro.operating_point import PropellerCurve, match
+from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.propulsion import build_propeller, propeller_curve, propeller_variables
 from hpsop_core.resistance import (
     HullVariables,
@@ -95,6 +96,7 @@ class _Physics:
     effective_block_coefficient: float
 
 
+@one_blas_thread()
 def evaluate(
     case: Case, variables: DesignVariables | None = None, level: int = 1, reference: Reference | None = None
 ) -> Evaluation:
@@ -128,6 +130,7 @@ def evaluate(
         return failed_evaluation(case.name, design, level, failure.stage, failure.reason, elapsed)
 
 
+@one_blas_thread()
 def reference_for(case: Case, level: int) -> Reference:
     """The initial design's numbers at a level, and level 1's wave calibration.
 

@@ -22,6 +22,7 @@ from hpsop_core.geometry.hydrostatics import (
 )
 from hpsop_core.geometry.nurbs import NurbsSurface, basis_matrix, rising_spline_inverse
 from hpsop_core.geometry.offset_table import OffsetTable, tabulate
+from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array, IntArray
 
 # Stations of the offset table: intervals in fractions of the length with their spacing. The flat stern makes most of
@@ -209,6 +210,7 @@ class ParentHull:
         """Hydrostatics of the parent itself."""
         return self.transform(self.length, self.breadth, self.draft).hydrostatics
 
+    @one_blas_thread()
     def transform(
         self,
         length: float,
@@ -381,6 +383,7 @@ class Hull:
         heights[-1] = self.draft
         return OffsetTable(self.station_map(x), heights, y * sy)
 
+    @one_blas_thread()
     def nurbs_patch(self, patch_name: str) -> tuple[NurbsSurface, float]:
         """The patch as a NURBS surface for exchange files, with its largest deviation from this hull in m.
 

@@ -29,6 +29,7 @@ from hpsop_core.geometry.hull_fit import (
     tidy_section,
 )
 from hpsop_core.geometry.nurbs import NurbsSurface
+from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array
 
 
@@ -246,6 +247,7 @@ def _pin_end(fixed_y: Array, fixed_z: Array, row: int, end: _End, draft: float, 
     return True
 
 
+@one_blas_thread()
 def fit_underwater(table: HalfBreadths, draft: float) -> UnderwaterFit:
     """The patches below the waterline: main, and where the table has them counter with skeg, and bulb.
 
@@ -428,6 +430,7 @@ def _boss(main: dict[str, PatchFit], height: float) -> float:
     return best if np.isfinite(best) else float(min(f.surface.control_points[0, 0, 0] for f in main.values()))
 
 
+@one_blas_thread()
 def parent_from_table(table: HalfBreadths, length: float, draft: float) -> ParentHull:
     """A parent hull with its fit report.
 

@@ -13,6 +13,7 @@ import numpy as np
 
 from hpsop_core.geometry.form import LongitudinalShift
 from hpsop_core.geometry.nurbs import NurbsSurface
+from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array, IntArray
 
 GAUSS_POINTS = 5
@@ -99,6 +100,7 @@ def _gauss(knots: Array, count: int) -> tuple[Array, Array]:
     return (middle[:, None] + half[:, None] * nodes).ravel(), (half[:, None] * weights).ravel()
 
 
+@one_blas_thread()
 def sectional_areas(surface: NurbsSurface, u: Array) -> Array:
     """Area of both sides of the sections at u, between the section and the centreplane, m2."""
     v, weight = _gauss(surface.knots_v, GAUSS_POINTS)
@@ -106,6 +108,7 @@ def sectional_areas(surface: NurbsSurface, u: Array) -> Array:
     return np.asarray(2.0 * (points[..., 1] * across[..., 2]) @ weight)
 
 
+@one_blas_thread()
 def integrate_parent(
     surfaces: Sequence[NurbsSurface], length: float, draft: float, curve_x: Array, curve_area: Array
 ) -> HullQuadrature:
@@ -148,6 +151,7 @@ def integrate_parent(
     )  # fmt: skip
 
 
+@one_blas_thread()
 def volume_and_centre(quadrature: HullQuadrature, shift: LongitudinalShift) -> tuple[float, float]:
     """Displaced volume (m3) and longitudinal centre of buoyancy (m) of the shifted parent, in the parent's frame."""
     moved, stretch = shift.evaluate(quadrature.x)
@@ -156,6 +160,7 @@ def volume_and_centre(quadrature: HullQuadrature, shift: LongitudinalShift) -> t
     return volume, float(slices @ moved) / volume
 
 
+@one_blas_thread()
 def hydrostatics(
     quadrature: HullQuadrature,
     shift: LongitudinalShift,

@@ -14,6 +14,7 @@ import numpy as np
 from scipy.interpolate import BSpline
 
 from hpsop_core.errors import InputError
+from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array
 
 # Grids of meshes and panels come again with every design; long lists of scattered parameters (fits) do not.
@@ -142,6 +143,7 @@ class NurbsSurface:
             left @ self.weights @ right.T,
         )
 
+    @one_blas_thread()
     def evaluate(self, u: Array, v: Array) -> Array:
         """Points on the tensor grid u x v: shape (len(u), len(v), 3), metres."""
         if self._is_polynomial:
@@ -150,6 +152,7 @@ class NurbsSurface:
         points, weight = self._homogeneous(u, v, 0, 0)
         return np.asarray(points / weight[..., None])
 
+    @one_blas_thread()
     def evaluate_pairs(self, u: Array, v: Array) -> Array:
         """Points at the pairs (u_i, v_i): shape (len(u), 3), metres."""
         left, right = self._basis(u, v, 0, 0)
@@ -157,6 +160,7 @@ class NurbsSurface:
         homogeneous = np.einsum("iu,uvk,iv->ik", left, weighted, right, optimize=True)
         return np.asarray(homogeneous[:, :3] / homogeneous[:, 3:])
 
+    @one_blas_thread()
     def derivatives(self, u: Array, v: Array) -> tuple[Array, Array, Array]:
         """Points and first derivatives with respect to u and v on the tensor grid, each (len(u), len(v), 3).
 
@@ -170,6 +174,7 @@ class NurbsSurface:
             tangents.append((numerator - slope[..., None] * points) / weight[..., None])
         return points, tangents[0], tangents[1]
 
+    @one_blas_thread()
     def with_knots_u(self, knots: Array) -> NurbsSurface:
         """The same surface with further knots in u (for polynomial and rational surfaces alike).
 

@@ -15,7 +15,14 @@ from hpsop_core.geometry.propeller_surface import rotate_blade
 from hpsop_core.hydro.blade_forces import OMEGA
 from hpsop_core.hydro.blade_grid import blade_grid, to_propeller_axes
 from hpsop_core.hydro.blade_panels import BladePanelResult
+from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array, IntArray
+
+
+MARGIN_RADIUS = 0.9
+"""The margin against cavitation is taken from the hub to this r/R."""
+
+_MARGIN_STATIONS = 15
 
 
 @dataclass(frozen=True)
@@ -37,6 +44,7 @@ class SurfacePressure:
     blade: IntArray
 
 
+@one_blas_thread()
 def surface_pressure(result: BladePanelResult, advance_coefficient: float, all_blades: bool = True) -> SurfacePressure:
     """Cp on the blades (one or all) and on the hub (one sector or all) at any J.
 
@@ -92,10 +100,10 @@ class CavitationMargin:
     """How far the blades are from the vapour pressure, a blade upwards being the worst case.
 
     Attributes:
-        margin: least Cp + sigma on the blade; negative where the water would evaporate.
-        minimum_pressure_coefficient: Cp at that panel, sigma: the cavitation number there, both on U^2 of its radius.
-        radius_ratio: r/R of that panel.
-        cavitating_share: share of the suction side's area on which Cp < -sigma.
+        margin: least Cp + sigma between the hub and 0.9 R; negative where the water would evaporate.
+        minimum_pressure_coefficient: Cp at that place, sigma: the cavitation number there, both on U^2 of its radius.
+        radius_ratio: r/R of that place.
+        cavitating_share: share of the suction side's area on which Cp < -sigma, without the end strips.
     """
 
     margin: float
@@ -105,51 +113,100 @@ class CavitationMargin:
     cavitating_share: float
 
 
-def cavitation_margin(
-    result: BladePanelResult,
-    advance_coefficient: float,
-    rotation_rate: float,
-    density: float,
-    pressure_margin_pascal: float,
-    gravity: float = 9.80665,
-) -> CavitationMargin:
-    """Least pressure on the blade against the vapour pressure, in the uniform wake of the open-water condition.
+@dataclass(frozen=True, eq=False)
+class BladePressureTable:
+    """The pressures on a blade at some advance coefficients: all that the margin needs, small enough to be remembered.
 
-    sigma = (P0 - Pv - rho g r)/(rho/2 U^2) at each panel's radius, with the blade upwards. The end strips at hub and
-    tip are left out: their pressures are those of a sharp edge that no blade has. On the optimiser's grid the nose is
-    coarse; for a figure to rely on solve with 48 x 16 panels or more.
-
-    Args:
-        result: of ``blade_panels.solve``.
-        advance_coefficient: J.
-        rotation_rate: n in 1/s.
-        density: kg/m3.
-        pressure_margin_pascal: P0 - Pv at the shaft's depth, Pa (hydro.cavitation.pressure_margin).
-        gravity: m/s2.
-
-    Raises:
-        InputError: rotation rate or density is not positive.
-        SolverFailure: the condition does not converge.
+    Attributes:
+        advance_coefficient: J, (nJ,), different from each other.
+        pressure: (nJ, n, m) over rho, for n = R = 1; back and face as in ``StripSurface``.
+        radius: (n, m) r/R of the panels.
+        strip_radius: (m,) r/R of the strips.
+        area: (n, m) of the panels over R^2.
+        hub_ratio: r_hub/R.
     """
-    if not (rotation_rate > 0.0 and density > 0.0):
-        raise InputError("cavitation margin: rotation_rate and density must be positive")
-    model = result.model
-    surface = model.grid.surface
-    condition = model.condition(float(advance_coefficient))
-    speed = _relative_speed_squared(surface.collocation, advance_coefficient)
-    coefficient = 2.0 * model.blade_pressure(condition) / speed
-    tip_radius = 0.5 * model.propeller.diameter
-    radius = np.hypot(surface.collocation[..., 1], surface.collocation[..., 2])
-    head = pressure_margin_pascal - density * gravity * radius * tip_radius
-    sigma = head / (0.5 * density * speed * (rotation_rate * tip_radius) ** 2)
-    reserve = (coefficient + sigma)[:, 1:-1]
-    row, strip = np.unravel_index(int(np.argmin(reserve)), reserve.shape)
-    back = slice(surface.shape[0] // 2, None)
-    area = surface.panels.moments[:, 0].reshape(surface.shape)[back, 1:-1]
-    return CavitationMargin(
-        float(reserve[row, strip]),
-        float(coefficient[row, strip + 1]),
-        float(sigma[row, strip + 1]),
-        float(radius[row, strip + 1]),
-        float(np.sum(area[reserve[back] < 0.0]) / np.sum(area)),
-    )
+
+    advance_coefficient: Array
+    pressure: Array
+    radius: Array
+    strip_radius: Array
+    area: Array
+    hub_ratio: float
+
+    @classmethod
+    def of(cls, result: BladePanelResult) -> BladePressureTable:
+        """At the advance coefficients of a result."""
+        model = result.model
+        surface = model.grid.surface
+        return cls(
+            result.open_water.advance_coefficient,
+            np.stack([model.blade_pressure(condition) for condition in result.conditions]),
+            np.hypot(surface.collocation[..., 1], surface.collocation[..., 2]),
+            model.grid.radius_middle,
+            surface.panels.moments[:, 0].reshape(surface.shape),
+            float(model.grid.radius_edges[0]),
+        )
+
+    def at(self, advance_coefficient: float) -> Array:
+        """(n, m) pressures at a J, by the polynomial through the table's."""
+        nodes = self.advance_coefficient
+        weights = [np.prod([(advance_coefficient - b) / (a - b) for b in nodes if b != a]) for a in nodes]
+        return np.asarray(np.tensordot(np.array(weights), self.pressure, 1))
+
+    def margin(
+        self,
+        advance_coefficient: float,
+        diameter: float,
+        rotation_rate: float,
+        density: float,
+        pressure_margin_pascal: float,
+        gravity: float = 9.80665,
+    ) -> CavitationMargin:
+        """Least pressure on the blade against the vapour pressure, in the uniform wake of the open-water condition.
+
+        sigma = (P0 - Pv - rho g r)/(rho/2 U^2) at each radius, with the blade upwards. Nearer to the tip than 0.9 R the
+        least pressure belongs to a thin nose and to the tip vortex: it falls without end as the panels get smaller, so
+        the margin stops there. The share of the area counts the tip.
+
+        Args:
+            advance_coefficient: J within the table.
+            diameter: D in m.
+            rotation_rate: n in 1/s.
+            density: kg/m3.
+            pressure_margin_pascal: P0 - Pv at the shaft's depth, Pa (hydro.cavitation.pressure_margin).
+            gravity: m/s2.
+
+        Raises:
+            InputError: diameter, rotation rate or density is not positive, or J lies outside the table.
+        """
+        if not (diameter > 0.0 and rotation_rate > 0.0 and density > 0.0):
+            raise InputError("cavitation margin: diameter, rotation_rate and density must be positive")
+        lowest, highest = float(np.min(self.advance_coefficient)), float(np.max(self.advance_coefficient))
+        if not lowest <= advance_coefficient <= highest:
+            raise InputError(
+                f"cavitation margin: J = {advance_coefficient:g} lies outside the table, {lowest:g} to {highest:g}"
+            )
+        tip_radius = 0.5 * diameter
+        dynamic = 0.5 * (4.0 * advance_coefficient**2 + (OMEGA * self.radius) ** 2)
+        coefficient = self.at(advance_coefficient) / dynamic
+        head = pressure_margin_pascal - density * gravity * tip_radius * self.radius
+        sigma = head / (density * (rotation_rate * tip_radius) ** 2 * dynamic)
+        radii = np.linspace(self.hub_ratio + 0.1 * (1.0 - self.hub_ratio), MARGIN_RADIUS, _MARGIN_STATIONS)
+        coefficient_there = self._along_the_radius(coefficient, radii)
+        sigma_there = self._along_the_radius(sigma, radii)
+        reserve = coefficient_there + sigma_there
+        row, place = np.unravel_index(int(np.argmin(reserve)), reserve.shape)
+        back = slice(self.area.shape[0] // 2, None)
+        area = self.area[back, 1:-1]
+        evaporates = (coefficient + sigma)[back, 1:-1] < 0.0
+        return CavitationMargin(
+            float(reserve[row, place]),
+            float(coefficient_there[row, place]),
+            float(sigma_there[row, place]),
+            float(radii[place]),
+            float(np.sum(area[evaporates]) / np.sum(area)),
+        )
+
+    def _along_the_radius(self, values: Array, radii: Array) -> Array:
+        """(n, k): values (n, m) of the strips, linear in the radius, at radii (k,)."""
+        return np.stack([np.interp(radii, self.strip_radius, row) for row in values])

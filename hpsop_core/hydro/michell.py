@@ -18,6 +18,7 @@ from collections.abc import Sequence
 import numpy as np
 
 from hpsop_core.errors import SolverFailure
+from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array
 
 # The step keeps du k0 L at 3, where the trapezoid's error is 1e-8; the tail beyond 10 holds 0.01 % on a Wigley hull.
@@ -25,6 +26,7 @@ PHASE_STEP = 3.0
 LARGEST_TANGENT = 10.0
 
 
+@one_blas_thread()
 def wave_coefficients(
     x: Array,
     z: Array,

@@ -20,7 +20,6 @@ from typing import Any
 
 import numpy as np
 from scipy.linalg import LinAlgError, lu_factor, lu_solve
-from threadpoolctl import threadpool_limits
 
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.geometry.hull import Hull
@@ -37,6 +36,7 @@ from hpsop_core.hydro.rankine_grid import SurfaceGrid, surface_grid
 from hpsop_core.hydro.rankine_operator import convect, difference_weights
 from hpsop_core.hydro.rankine_resistance import plane_resistance, pressure_force, sinkage_and_trim, wave_planes
 from hpsop_core.hydro.rankine_settings import RankineSettings
+from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array
 
 __all__ = [
@@ -156,6 +156,7 @@ def normal_component(panels: SourcePanels, velocities: Sequence[Array]) -> Array
     return np.asarray(n[:, 0, None] * velocities[0] + n[:, 1, None] * velocities[1] + n[:, 2, None] * velocities[2])
 
 
+@one_blas_thread()
 def double_body(panels: SourcePanels, *, image_z: bool = True) -> DoubleBody:
     """Hess-Smith solution in a unit stream along +x.
 
@@ -203,6 +204,7 @@ class SurfaceSystem:
     forcing: Array
 
 
+@one_blas_thread()
 def surface_system(body: DoubleBody, grid: SurfaceGrid) -> SurfaceSystem:
     """Assemble the free-surface equations and eliminate the hull's unknowns."""
     # On z = 0 the z-image doubles the horizontal velocities and cancels the vertical one.
@@ -227,6 +229,7 @@ def surface_system(body: DoubleBody, grid: SurfaceGrid) -> SurfaceSystem:
     return SurfaceSystem(grid, flow_square, elimination, on_hull, along, convection, vertical, -rate[:, 0])
 
 
+@one_blas_thread()
 def surface_strengths(system: SurfaceSystem, gravity: float) -> Array:
     """Surface source strengths (n,) at one Froude number, 1/Fn^2 = ``gravity``.
 
@@ -266,6 +269,7 @@ def solver_axes(body: HullPanels) -> tuple[SourcePanels, Array]:
     return panels, waterline
 
 
+@one_blas_thread()
 def solve(
     hull: Hull,
     froude_numbers: Sequence[float],
@@ -290,14 +294,13 @@ def solve(
     )
 
 
+@one_blas_thread()
 def solve_panels(
     body: HullPanels, froude_numbers: Sequence[float], settings: RankineSettings, fields: bool = False
 ) -> RankineResult:
     """As ``solve``, for any hull given as panels."""
     numbers = check_froude_numbers(froude_numbers)
-    # One BLAS thread: the same bits in a worker and in a shell, and workers do not fight for cores.
-    with threadpool_limits(limits=1):
-        return _solve(body, numbers, settings, fields)
+    return _solve(body, numbers, settings, fields)
 
 
 def _solve(body: HullPanels, numbers: tuple[float, ...], settings: RankineSettings, fields: bool) -> RankineResult:

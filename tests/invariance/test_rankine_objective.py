@@ -2,10 +2,6 @@
 
 from __future__ import annotations
 
-import os
-import subprocess
-import sys
-
 import numpy as np
 import pytest
 from scipy.linalg import solve as dense_solve
@@ -80,25 +76,6 @@ def test_conditions_do_not_know_of_each_other() -> None:
     alone = rankine.solve(hull, FROUDE_NUMBERS[1:])
     # Matrix products of another width may round differently.
     assert together.conditions[1].wave_coefficient == pytest.approx(alone.conditions[0].wave_coefficient, rel=1e-10)
-
-
-PROGRAM = """
-from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.hydro.rankine import solve
-result = solve(load_parent_hull().transform(340.0, 50.0, 14.2), (0.22, 0.27))
-print([(c.wave_coefficient.hex(), c.wave_coefficient_pressure.hex(), c.trim.hex()) for c in result.conditions])
-"""
-
-
-def test_same_bits_in_other_processes_and_with_other_thread_settings() -> None:
-    answers = set()
-    for threads in ("1", "2"):
-        environment = {**os.environ, "OPENBLAS_NUM_THREADS": threads, "OMP_NUM_THREADS": threads}
-        run = subprocess.run(
-            [sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True, check=True, timeout=120
-        )
-        answers.add(run.stdout)
-    assert len(answers) == 1
 
 
 @pytest.mark.parametrize("froude_number", FROUDE_NUMBERS)
