@@ -12,6 +12,7 @@ import numpy as np
 from hpsop_core.geometry.propeller import Propeller
 from hpsop_core.geometry.propeller_sections import half_thickness
 from hpsop_core.geometry.propeller_surface import cylinder_points, to_cartesian
+from hpsop_core.hydro.chord_surface import chord_points
 from hpsop_core.typing_aliases import Array, IntArray
 
 _ROTATION = 2.0 * np.pi
@@ -23,7 +24,7 @@ _OTHER_STATIONS = (2, 10)
 
 
 def thickness_normal_velocity(propeller: Propeller, radii: Array, chord_fraction: Array) -> Array:
-    """Normal velocity, towards the suction side, that the thickness of all blades induces on the strips of one.
+    """Normal velocity, along ``ChordPoints.normals``, that the thickness of all blades induces on the strips of one.
 
     Args:
         propeller: the propeller.
@@ -33,24 +34,12 @@ def thickness_normal_velocity(propeller: Propeller, radii: Array, chord_fraction
     Returns:
         (M, N, 2): for a unit advance speed (in n R), and for the rotation.
     """
-    fractions = chord_fraction
-    sections = propeller.table.at(radii)
-    pitch = sections.pitch_angle[:, None]
-    x, theta = cylinder_points(
-        radii[:, None],
-        pitch,
-        sections.skew[:, None],
-        sections.rake_ratio[:, None],
-        2.0 * sections.chord_ratio[:, None] * (fractions - 0.5),
-        np.zeros((1, fractions.size)),
-    )
-    points = to_cartesian(x, radii[:, None], theta).reshape(-1, 3)
-    axial, tangential = -np.cos(pitch) + 0.0 * theta, -np.sin(pitch)
-    normals = np.stack([axial, tangential * np.cos(theta), -tangential * np.sin(theta)], axis=-1).reshape(-1, 3)
+    control = chord_points(propeller, radii, chord_fraction)
+    points, normals = control.points, control.normals
     others = np.arange(1, propeller.blade_count, dtype=np.int64)
     velocity = _source_velocity(propeller, radii.size, _OWN_STATIONS, np.arange(1, dtype=np.int64), points, normals)
     velocity += _source_velocity(propeller, radii.size, _OTHER_STATIONS, others, points, normals)
-    return velocity.reshape(radii.size, fractions.size, 2)
+    return velocity.reshape(radii.size, chord_fraction.size, 2)
 
 
 def _source_velocity(

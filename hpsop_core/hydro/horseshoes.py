@@ -12,6 +12,7 @@ import numpy as np
 from hpsop_core.geometry.propeller import Propeller
 from hpsop_core.geometry.propeller_surface import cylinder_points, to_cartesian
 from hpsop_core.geometry.radial_table import BladeSections
+from hpsop_core.hydro.chord_surface import ChordPoints, chord_points
 from hpsop_core.hydro.helical_vortices import helix_tail_velocity, polyline_normal_velocity, wrench_velocities
 from hpsop_core.typing_aliases import Array, IntArray
 
@@ -35,7 +36,7 @@ class HorseshoeGrid:
         chordwise: bound vortices on each strip, N; each stands at the quarter of its share of the chord.
         leg_x, leg_theta: trailing vortices on the blade, from each bound vortex to the trailing edge, (N, M + 1, n).
         control_fraction: fractions of the chord of the control points, the three quarters of the shares, (N,).
-        control_x, control_theta: control points, (M, N).
+        control: control points, strip by strip.
     """
 
     blade_count: int
@@ -48,8 +49,7 @@ class HorseshoeGrid:
     leg_x: Array
     leg_theta: Array
     control_fraction: Array
-    control_x: Array
-    control_theta: Array
+    control: ChordPoints
 
     @staticmethod
     def make(propeller: Propeller, strips: int, chordwise: int) -> HorseshoeGrid:
@@ -73,15 +73,6 @@ class HorseshoeGrid:
             np.zeros_like(along),
         )
         control_fraction = (np.arange(chordwise) + 0.75) / chordwise
-        control_along = 2.0 * sections.chord_ratio[:, None] * (control_fraction - 0.5)
-        control_x, control_theta = cylinder_points(
-            radii[:, None],
-            sections.pitch_angle[:, None],
-            sections.skew[:, None],
-            sections.rake_ratio[:, None],
-            control_along,
-            np.zeros_like(control_along),
-        )
         return HorseshoeGrid(
             blade_count=propeller.blade_count,
             hub_ratio=hub,
@@ -93,8 +84,7 @@ class HorseshoeGrid:
             leg_x=leg_x,
             leg_theta=leg_theta,
             control_fraction=control_fraction,
-            control_x=control_x,
-            control_theta=control_theta,
+            control=chord_points(propeller, radii, control_fraction),
         )
 
     @property
@@ -111,21 +101,17 @@ def normal_influence(grid: HorseshoeGrid, wake_advance: Array) -> Array:
         wake_advance: r tan(beta_i) of the wake, (K,).
 
     Returns:
-        (K, M N, M N): control point, then horseshoe, each strip by strip; normal towards the suction side.
+        (K, M N, M N): control point, then horseshoe, each strip by strip; normal as in ``ChordPoints``.
     """
-    strips, chordwise = grid.control_x.shape
-    control = to_cartesian(grid.control_x, grid.radii[:, None], grid.control_theta).reshape(-1, 3)
-    axial, tangential = (np.repeat(-f(grid.sections.pitch_angle), chordwise) for f in (np.cos, np.sin))
-    theta = grid.control_theta.ravel()
-    normals = np.stack([axial, tangential * np.cos(theta), -tangential * np.sin(theta)], axis=-1)
-    count = strips * chordwise
+    control, normals = grid.control.points, grid.control.normals
+    chordwise, count = grid.chordwise, normals.shape[0]
     influence = np.zeros((wake_advance.size, count, count))
     influence += _on_blade(grid, control, normals)
     wakes = _Wakes.make(grid)
     for node, advance in enumerate(wake_advance):
         legs = wakes.normal_velocity(grid, float(advance), control, normals)
         tail_axial, tail_tangential = wakes.tail(grid, float(advance))
-        legs += tail_axial * axial + tail_tangential * tangential
+        legs += tail_axial * grid.control.axial + tail_tangential * grid.control.tangential
         influence[node] += np.repeat((legs[1:] - legs[:-1]).T, chordwise, axis=1)
     return influence
 
@@ -181,7 +167,7 @@ class _Wakes:
 
     def tail(self, grid: HorseshoeGrid, advance: float) -> tuple[Array, Array]:
         """Axial and tangential velocity of what follows the last point of legs less images, two (M + 1, M N)."""
-        distance = grid.leg_x[0, :, -1:] + advance * self.last_angle - grid.control_x.ravel()
+        distance = grid.leg_x[0, :, -1:] + advance * self.last_angle - grid.control.x.ravel()
         step, radii = np.array(advance), np.repeat(grid.radii, grid.chordwise)
         real = helix_tail_velocity(radii, grid.edges[:, None], distance, step, grid.blade_count)
         image = helix_tail_velocity(radii, grid.image_edges[:, None], distance, step, grid.blade_count)

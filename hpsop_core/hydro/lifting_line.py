@@ -32,10 +32,11 @@ from hpsop_core.hydro.blade_thickness import thickness_normal_velocity
 from hpsop_core.hydro.horseshoes import HorseshoeGrid, induced_at_lifting_line, normal_influence
 from hpsop_core.hydro.open_water import OpenWater, reynolds_number_07R
 from hpsop_core.hydro.section_drag import SectionDrag
+from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array
 
-SOLVER = "lifting line 1.1"
-CAMBER_EFFECTIVENESS = 0.848
+SOLVER = "lifting line 1.2"
+CAMBER_EFFECTIVENESS = 0.846
 """The one lift factor, fitted on the open-water test of P4119 alone (docs/theory-lifting-line.md)."""
 
 _STAGE = "lifting_line"
@@ -145,6 +146,7 @@ class PreparedLiftingLine:
         """The sections of the strips."""
         return self.grid.sections
 
+    @one_blas_thread()
     def solve(self, advance_coefficients: Array | Sequence[float] | float, drag: SectionDrag) -> OpenWater:
         """Open-water characteristics at the given J (a number or (nJ,)).
 
@@ -168,6 +170,7 @@ class PreparedLiftingLine:
             settings=f"{self.settings}; {drag}",
         )
 
+    @one_blas_thread()
     def state(self, advance_coefficients: Array | Sequence[float] | float, drag: SectionDrag) -> LiftingLineState:
         """As ``solve``, with the flow at every strip."""
         advance = np.atleast_1d(np.asarray(advance_coefficients, dtype=np.float64))
@@ -273,6 +276,7 @@ class PreparedLiftingLine:
         )
 
 
+@one_blas_thread()
 def prepare(propeller: Propeller, settings: LiftingLineSettings = DEFAULT_SETTINGS) -> PreparedLiftingLine:
     """Build the table over the wake pitch, the costly part of a solution.
 

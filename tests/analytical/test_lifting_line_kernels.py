@@ -11,6 +11,7 @@ from hpsop_core.geometry.propeller import load_propeller, propeller_family
 from hpsop_core.geometry.propeller_sections import ZERO_LIFT_ANGLE_PER_CAMBER, half_thickness
 from hpsop_core.geometry.propeller_surface import to_cartesian
 from hpsop_core.hydro.blade_thickness import thickness_normal_velocity
+from hpsop_core.hydro.chord_surface import chord_points
 from hpsop_core.hydro.helical_vortices import helix_tail_velocity, polyline_normal_velocity, wrench_velocities
 from hpsop_core.hydro.lifting_line import _CAMBER_SLOPES
 from hpsop_core.typing_aliases import Array
@@ -132,3 +133,22 @@ def test_thickness_of_a_far_blade_is_a_known_source() -> None:
     assert float(np.sum(growth)) == pytest.approx(0.0, abs=1e-12)
     # integration by parts: int x t' = -int t; 24 stations at their cosine middles
     assert -float(np.sum(growth * fraction)) == pytest.approx(area, rel=0.01)
+
+
+def test_normals_are_square_to_a_raked_and_skewed_chord_surface() -> None:
+    parent = load_propeller()
+    outward = (parent.radius_ratio - 0.2) / 0.8
+    table = replace(parent, rake_ratio=0.15 * outward, skew=np.radians(25.0) * outward**2)
+    propeller = propeller_family(table, 1.0, 4)
+    radii, fractions, step = np.array([0.35, 0.6, 0.9]), np.array([0.2, 0.5, 0.875]), 1e-4
+    here = chord_points(propeller, radii, fractions)
+    for moved, tolerance in (
+        (chord_points(propeller, radii, fractions + step), 1e-3),
+        # between the rows of the table the derivative of its interpolation has corners
+        (chord_points(propeller, radii + step, fractions), 5e-3),
+    ):
+        along = moved.points - here.points
+        along /= np.linalg.norm(along, axis=1)[:, None]
+        assert np.max(np.abs(np.sum(along * here.normals, axis=1))) < tolerance
+    # the part across the section is a unit vector
+    assert np.allclose(np.hypot(here.axial, here.tangential), 1.0)
