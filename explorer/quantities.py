@@ -10,13 +10,13 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from hpsop_core.evaluation_result import ConditionResult, Evaluation
+from hpsop_core.evaluation_result import Evaluation
 
 OBJECTIVE_TITLES = {
     "resistance": "resistance, Σ w R/R₀",
     "efficiency": "efficiency, Σ w η₀/η",
     "delivered_power": "delivered power, Σ w P/P₀",
-    "displacement": "displacement, V₀/V",
+    "displacement": "displacement, ∇₀/∇",
     "cavitation_margin": "cavitation margin, 1 − (EAR − EARreq)/EAR",
 }
 CONSTRAINT_WORDS = {
@@ -35,7 +35,7 @@ class Quantity:
     Attributes:
         key: unique, for state and events.
         label: what it is, short.
-        symbol: with subscript digits, for axes.
+        symbol: what follows an underscore is its subscript (charts/plot.py sets it).
         unit: of the shown value.
         decimals: digits after the point.
         value: from an evaluation, already in ``unit``; None where it does not exist.
@@ -58,7 +58,7 @@ class Quantity:
 
     def title(self) -> str:
         """Symbol and unit, for an axis."""
-        return f"{self.symbol} [{self.unit}]" if self.unit else self.symbol
+        return f"{self.symbol} [{self.unit or '–'}]"
 
 
 def number_text(value: float | None, decimals: int) -> str:
@@ -139,7 +139,7 @@ VARIABLES: tuple[Quantity, ...] = (
     Quantity("diameter", "propeller diameter", "D", "m", 2, _variable("diameter"), "Variables"),
     Quantity("blade_count", "blades", "Z", "", 0, _variable("blade_count"), "Variables"),
     Quantity("pitch_ratio", "pitch multiplier", "P/P₀", "", 3, _variable("pitch_ratio"), "Variables"),
-    Quantity("displacement_ratio", "displacement ratio", "V/V₀", "", 3, _variable("displacement_ratio"), "Variables"),
+    Quantity("displacement_ratio", "displacement ratio", "∇/∇₀", "", 3, _variable("displacement_ratio"), "Variables"),
     Quantity("expanded_area_ratio", "expanded area ratio", "EAR", "", 3, _variable("expanded_area_ratio"), "Variables"),
     Quantity(
         "buoyancy_centre_shift",
@@ -153,14 +153,14 @@ VARIABLES: tuple[Quantity, ...] = (
 )
 
 HULL: tuple[Quantity, ...] = (
-    Quantity("length", "length between perpendiculars", "Lpp", "m", 2, _hull("length"), "Hull"),
+    Quantity("length", "length between perpendiculars", "L_PP", "m", 2, _hull("length"), "Hull"),
     Quantity("breadth", "breadth", "B", "m", 2, _hull("breadth"), "Hull"),
     Quantity("hull_draft", "draft", "d", "m", 2, _hull("draft"), "Hull"),
-    Quantity("block_coefficient", "block coefficient", "CB", "", 4, _hull("block_coefficient"), "Hull"),
-    Quantity("displaced_volume", "displaced volume", "V", "m³", 0, _hull("displaced_volume"), "Hull"),
+    Quantity("block_coefficient", "block coefficient", "C_B", "", 4, _hull("block_coefficient"), "Hull"),
+    Quantity("displaced_volume", "displaced volume", "∇", "m³", 0, _hull("displaced_volume"), "Hull"),
     Quantity("wetted_surface", "wetted surface", "S", "m²", 0, _hull("wetted_surface"), "Hull"),
     Quantity("lcb", "LCB forward of AP", "LCB", "m", 2, _hull("longitudinal_centre_of_buoyancy"), "Hull"),
-    Quantity("booked_cb", "booked block coefficient", "CB booked", "", 4, _hull("booked_block_coefficient"), "Hull"),
+    Quantity("booked_cb", "booked block coefficient", "C_B booked", "", 4, _hull("booked_block_coefficient"), "Hull"),
 )
 
 PROPELLER: tuple[Quantity, ...] = (
@@ -183,24 +183,26 @@ CONSTRAINTS: tuple[Quantity, ...] = (
 )
 
 _CONDITION = (
-    ("speed", "speed", "V", "kn", 2, 1.0 / 0.514444, 0),
-    ("total_resistance", "total resistance", "Rt", "kN", 0, 1e-3, -1),
-    ("wave_resistance", "wave resistance", "Rw", "kN", 0, 1e-3, -1),
-    ("friction_resistance", "friction (ITTC-57)", "Rf", "kN", 0, 1e-3, -1),
-    ("thrust", "thrust", "T", "kN", 0, 1e-3, 0),
-    ("torque", "torque", "Q", "kN m", 0, 1e-3, 0),
-    ("wake_fraction", "wake fraction", "w", "", 3, 1.0, 0),
-    ("thrust_deduction", "thrust deduction", "t", "", 3, 1.0, 0),
-    ("advance_coefficient", "advance coefficient", "J", "", 4, 1.0, 0),
-    ("rotation_rate_rpm", "rotation rate", "n", "rpm", 1, 1.0, 0),
-    ("thrust_coefficient", "thrust coefficient", "KT", "", 4, 1.0, 0),
-    ("torque_coefficient", "torque coefficient × 10", "10KQ", "", 4, 10.0, 0),
-    ("open_water_efficiency", "open-water efficiency", "η₀", "", 4, 1.0, 1),
-    ("delivered_power", "delivered power", "PD", "MW", 2, 1e-6, -1),
-    ("required_expanded_area_ratio", "required EAR (Keller)", "EARreq", "", 3, 1.0, 0),
-    ("cavitation_number", "cavitation number", "σ", "", 3, 1.0, 0),
+    ("froude_number", "Froude number", "Fn_", "", 4, 1.0, 0),
+    ("speed", "speed", "V_", "kn", 2, 1.0 / 0.514444, 0),
+    ("total_resistance", "total resistance", "R_T", "kN", 0, 1e-3, -1),
+    ("wave_resistance", "wave resistance", "R_W", "kN", 0, 1e-3, -1),
+    ("friction_resistance", "friction (ITTC-57)", "R_F", "kN", 0, 1e-3, -1),
+    ("thrust", "thrust", "T_", "kN", 0, 1e-3, 0),
+    ("torque", "torque", "Q_", "kN m", 0, 1e-3, 0),
+    ("wake_fraction", "wake fraction", "w_", "", 3, 1.0, 0),
+    ("thrust_deduction", "thrust deduction", "t_", "", 3, 1.0, 0),
+    ("advance_coefficient", "advance coefficient", "J_", "", 4, 1.0, 0),
+    ("rotation_rate_rpm", "rotation rate", "n_", "rpm", 1, 1.0, 0),
+    ("thrust_coefficient", "thrust coefficient", "K_T", "", 4, 1.0, 0),
+    ("torque_coefficient", "torque coefficient × 10", "10K_Q", "", 4, 10.0, 0),
+    ("open_water_efficiency", "open-water efficiency", "η_0", "", 4, 1.0, 1),
+    ("delivered_power", "delivered power", "P_D", "MW", 2, 1e-6, -1),
+    ("required_expanded_area_ratio", "required EAR (Keller)", "EAR_req", "", 3, 1.0, 0),
+    ("cavitation_number", "cavitation number", "σ_", "", 3, 1.0, 0),
+    ("blade_cavitation_margin", "least Cp + σ on the blades (level 2)", "Cp+σ", "", 3, 1.0, 0),
+    ("blade_cavitating_share", "back below vapour pressure (level 2)", "A_cav", "%", 1, 100.0, 0),
 )
-_SUBSCRIPTS = "₁₂₃₄"
 
 
 def condition_quantities(froude_numbers: Sequence[float]) -> tuple[Quantity, ...]:
@@ -212,7 +214,7 @@ def condition_quantities(froude_numbers: Sequence[float]) -> tuple[Quantity, ...
                 Quantity(
                     f"{name}_{index + 1}",
                     label,
-                    f"{symbol}{_SUBSCRIPTS[index]}",
+                    f"{symbol}{index + 1}" if "_" in symbol else f"{symbol}_{index + 1}",
                     unit,
                     decimals,
                     _condition(index, name, scale),
@@ -240,8 +242,3 @@ def violated(evaluation: Evaluation) -> list[str]:
         for name, value in evaluation.constraints.items()
         if value is not None and value > 1e-6
     ]
-
-
-def operating(evaluation: Evaluation) -> tuple[ConditionResult, ...]:
-    """The conditions, for charts."""
-    return evaluation.conditions

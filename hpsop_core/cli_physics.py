@@ -111,6 +111,13 @@ def print_evaluation(result: Evaluation) -> None:
         for c in result.conditions
     ]  # fmt: skip
     print_table(header, rows)
+    for c in result.conditions:
+        if c.blade_cavitation_margin is not None:
+            print(
+                f"blades at Fn {c.froude_number:.4f}: least Cp + sigma {c.blade_cavitation_margin:+.3f} at "
+                f"{c.blade_cavitation_radius_ratio:.2f} R (from hub to 0.9 R); "
+                f"{100.0 * (c.blade_cavitating_share or 0.0):.1f} % of the back below vapour pressure"
+            )
     print("objectives: " + ", ".join(f"{name} {value:.5f}" for name, value in result.objectives.items() if value))
     limits = ", ".join(
         f"{name} {'not applied' if value is None else format(value, '+.4f')}"

@@ -33,7 +33,7 @@ from hpsop_core.hydro import cavitation
 from hpsop_core.hydro.interaction import thrust_deduction, wake_fraction
 from hpsop_core.hydro.operating_point import PropellerCurve, match
 from hpsop_core.one_thread import one_blas_thread
-from hpsop_core.propulsion import build_propeller, propeller_curve, propeller_variables
+from hpsop_core.propulsion import PropellerAnswer, build_propeller, propeller_answer, propeller_variables
 from hpsop_core.resistance import (
     HullVariables,
     ResistancePoint,
@@ -256,7 +256,7 @@ def _compute(case: Case, variables: DesignVariables, level: int, basis: Referenc
         froude_numbers = basis.froude_numbers
     propeller_key = propeller_variables(case.propeller, variables)
     propeller = build_propeller(propeller_key)
-    curve = propeller_curve(propeller_key, level, constants.propeller_roughness)
+    answer = propeller_answer(propeller_key, level, constants.propeller_roughness)
     waves = wave_answers(hull_key, level, froude_numbers)
     if case.hull.form == "affine":
         volume = basis.displaced_volume * variables.displacement_ratio
@@ -282,11 +282,11 @@ def _compute(case: Case, variables: DesignVariables, level: int, basis: Referenc
             wake,
             hull,
             propeller,
-            curve,
+            answer,
         )
         for froude, wave, weight in zip(froude_numbers, waves, case.conditions.weights, strict=True)
     )
-    return _Physics(hull, propeller, conditions, curve, volume, block_coefficient)
+    return _Physics(hull, propeller, conditions, answer.curve, volume, block_coefficient)
 
 
 def _condition(
@@ -296,12 +296,12 @@ def _condition(
     wake: float,
     hull: Hull,
     propeller: Propeller,
-    curve: PropellerCurve,
+    answer: PropellerAnswer,
 ) -> ConditionResult:
     constants = case.constants
     deduction = thrust_deduction(wake, constants.thrust_deduction_factor)
     operating = match(
-        curve,
+        answer.curve,
         point.total_resistance,
         wake,
         deduction,
@@ -319,6 +319,18 @@ def _condition(
     )
     advance_speed = (1.0 - wake) * point.speed
     section_speed = math.hypot(advance_speed, 0.7 * math.pi * operating.rotation_rate * propeller.diameter)
+    blades = (
+        None
+        if answer.pressures is None
+        else answer.pressures.margin(
+            operating.advance_coefficient,
+            propeller.diameter,
+            operating.rotation_rate,
+            constants.density,
+            margin,
+            constants.gravity,
+        )
+    )
     return ConditionResult(
         froude_number=point.froude_number,
         weight=weight,
@@ -345,6 +357,10 @@ def _condition(
             margin, constants.density, advance_speed, operating.rotation_rate, propeller.diameter
         ),
         reynolds_number_07R=section_speed * _chord_07r(propeller) / constants.viscosity,
+        blade_cavitation_margin=blades.margin if blades else None,
+        blade_minimum_pressure_coefficient=blades.minimum_pressure_coefficient if blades else None,
+        blade_cavitation_radius_ratio=blades.radius_ratio if blades else None,
+        blade_cavitating_share=blades.cavitating_share if blades else None,
         wave_coefficient_pressure=point.wave_coefficient_pressure,
         sinkage=point.sinkage,
         trim=point.trim,

@@ -88,6 +88,10 @@ class ConditionResult:
         wave_calibration: the factor on the solver's wave resistance.
         cavitation_number: (P0 + rho g h - Pv)/(1/2 rho (V_A^2 + (0.7 pi n D)^2)).
         reynolds_number_07R: chord Reynolds number at 0.7 R, full scale.
+        blade_cavitation_margin: level 2: least Cp + sigma on the blades between hub and 0.9 R, both on the undisturbed
+            speed of their radius, blade upwards; negative where the water would evaporate.
+        blade_minimum_pressure_coefficient, blade_cavitation_radius_ratio: level 2: Cp and r/R there.
+        blade_cavitating_share: level 2: share of the back's area under vapour pressure.
         wave_coefficient_pressure: level 2's cross-check by pressure integration, not calibrated.
         sinkage, trim: level 2: m (positive down) and rad (positive bow down), reported, not fed back.
     """
@@ -114,6 +118,10 @@ class ConditionResult:
     cavitation_number: float | None = None
     reynolds_number_07R: float | None = None  # noqa: N815 - a name of the contract's kind
     wave_coefficient_pressure: float | None = None
+    blade_cavitation_margin: float | None = None
+    blade_minimum_pressure_coefficient: float | None = None
+    blade_cavitation_radius_ratio: float | None = None
+    blade_cavitating_share: float | None = None
     sinkage: float | None = None
     trim: float | None = None
 

@@ -6,6 +6,7 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
 from pathlib import Path
+from typing import TYPE_CHECKING
 
 import numpy as np
 
@@ -17,6 +18,9 @@ from hpsop_core.hydro import lifting_line
 from hpsop_core.hydro.open_water import OpenWater, SectionDrag
 from hpsop_core.hydro.operating_point import PropellerCurve, chebyshev_nodes
 from hpsop_core.typing_aliases import Array
+
+if TYPE_CHECKING:
+    from hpsop_core.hydro.blade_pressure import BladePressureTable
 
 # Operating points of a ship's propeller lie between; beyond the upper end P4119 gives no thrust.
 ADVANCE_RANGE = (0.25, 1.15)
@@ -69,9 +73,22 @@ def build_propeller(variables: PropellerVariables) -> Propeller:
     )
 
 
+@dataclass(frozen=True, eq=False)
+class PropellerAnswer:
+    """What is remembered of a propeller at a level.
+
+    Attributes:
+        curve: KT and KQ over J.
+        pressures: level 2: the pressures on its blades over J, else None.
+    """
+
+    curve: PropellerCurve
+    pressures: BladePressureTable | None
+
+
 @lru_cache(maxsize=4096)
-def propeller_curve(variables: PropellerVariables, level: int, roughness: float) -> PropellerCurve:
-    """Open-water curves at full scale between the ends of ``ADVANCE_RANGE``.
+def propeller_answer(variables: PropellerVariables, level: int, roughness: float) -> PropellerAnswer:
+    """Open-water curves at full scale between the ends of ``ADVANCE_RANGE``, and at level 2 the blades' pressures.
 
     The section drag is ITTC-78's rough line, which does not depend on the rate of revolutions, so one curve serves
     every condition.
@@ -85,8 +102,15 @@ def propeller_curve(variables: PropellerVariables, level: int, roughness: float)
         SolverFailure: the solver does not converge; names the J.
     """
     nodes = chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
-    result = solve_open_water(build_propeller(variables), level, nodes, SectionDrag.full_scale(roughness))
-    return PropellerCurve(nodes, result.thrust_coefficient, result.torque_coefficient)
+    propeller, drag = build_propeller(variables), SectionDrag.full_scale(roughness)
+    if level == 1:
+        result, pressures = lifting_line.solve(propeller, nodes, drag), None
+    else:
+        from hpsop_core.hydro import blade_panels
+
+        panels = blade_panels.solve(propeller, nodes, drag)
+        result, pressures = panels.open_water, panels.pressure_table()
+    return PropellerAnswer(PropellerCurve(nodes, result.thrust_coefficient, result.torque_coefficient), pressures)
 
 
 def solve_open_water(

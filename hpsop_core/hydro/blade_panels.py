@@ -16,7 +16,6 @@ from dataclasses import dataclass, field, replace
 from typing import TYPE_CHECKING, Literal
 
 import numpy as np
-from threadpoolctl import threadpool_limits
 
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.geometry.propeller import Propeller
@@ -40,16 +39,17 @@ from hpsop_core.hydro.blade_hub_grid import HubGrid, HubSettings, hub_grid
 from hpsop_core.hydro.blade_potential import KuttaProblem, SurfaceGradient, factorise, tangential
 from hpsop_core.hydro.open_water import OpenWater, reynolds_number_07R
 from hpsop_core.hydro.section_drag import SectionDrag
+from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array, BoolArray
 
 if TYPE_CHECKING:
-    from hpsop_core.hydro.blade_pressure import CavitationMargin, SurfacePressure
+    from hpsop_core.hydro.blade_pressure import BladePressureTable, SurfacePressure
 
-SOLVER = "blade panels 1"
+SOLVER = "blade panels 1.1"
 WAKE_PITCH_NODES = (0.6, 0.9, 1.2)
 """Pitch of the tabulated wakes over the blade's pitch at 0.7 R; between them quadratic interpolation."""
 
-CAMBER_EFFECTIVENESS = 0.93
+CAMBER_EFFECTIVENESS = 0.933
 """The one viscous lift factor, fitted on the open-water test of P4119 alone (docs/theory-propeller-panels.md)."""
 
 CROSS_FLOW_DISTANCE = (0.03, 0.08)
@@ -111,7 +111,7 @@ class BladePanelSettings:
 
 
 @dataclass(frozen=True)
-class _Condition:
+class FlowCondition:
     """The flow at one advance coefficient: jumps (m,) of the potential, wake pitch P/R (scalar)."""
 
     advance_coefficient: float
@@ -166,7 +166,7 @@ class BladePanelModel:
             return np.asarray(2.0 * self.propeller.table.at(self.grid.radius_edges).pitch_ratio)
         return np.full(self.grid.radius_edges.size, wake_pitch)
 
-    def condition(self, advance_coefficient: float) -> _Condition:
+    def condition(self, advance_coefficient: float) -> FlowCondition:
         """Solve one advance coefficient: jumps by the Kutta condition, wake pitch by alignment.
 
         Raises:
@@ -181,7 +181,7 @@ class BladePanelModel:
             return self.kutta.solve(weights, terms, first, label)
 
         if self.settings.wake == "geometric_pitch":
-            return _Condition(advance_coefficient, jumps(0.0, None), 0.0)
+            return FlowCondition(advance_coefficient, jumps(0.0, None), 0.0)
         low, high = float(self.wake_pitches[0]), float(self.wake_pitches[-1])
         # where the wake of a usual propeller settles
         blade_pitch = 2.0 * self.propeller.pitch_diameter_ratio_07R
@@ -191,7 +191,7 @@ class BladePanelModel:
         for _ in range(40):
             error = min(max(self._loaded_pitch(jump, pitch, advance_coefficient), low), high) - pitch
             if abs(error) < _PITCH_TOLERANCE:
-                return _Condition(advance_coefficient, jump, pitch)
+                return FlowCondition(advance_coefficient, jump, pitch)
             slope = -1.0 if last is None or pitch == last[0] else (error - last[1]) / (pitch - last[0])
             last = (pitch, error)
             # the error falls with the pitch, at a slope of about -0.7 to -1.3
@@ -210,7 +210,7 @@ class BladePanelModel:
         pitch = OMEGA * self.strips.radius * flow.axial / flow.tangential
         return float(np.sum(weight * pitch) / np.sum(weight))
 
-    def forces(self, condition: _Condition, drag: SectionDrag) -> tuple[float, float]:
+    def forces(self, condition: FlowCondition, drag: SectionDrag) -> tuple[float, float]:
         """(KT, KQ) of a solved condition."""
         advance = 2.0 * condition.advance_coefficient
         matrices = induction_matrices(self.strips, self.edge_pitch(condition.wake_pitch))
@@ -237,12 +237,12 @@ class BladePanelModel:
             thrust, torque = thrust + hub_thrust, torque + hub_torque
         return thrust + viscous[0], torque + viscous[1]
 
-    def _potential(self, condition: _Condition) -> Array:
+    def _potential(self, condition: FlowCondition) -> Array:
         weights = np.array([2.0 * condition.advance_coefficient, OMEGA])
         wake = self.interpolate(self.wake_potentials, condition.wake_pitch)
         return np.asarray(self.onset_potential @ weights + wake @ condition.jump)
 
-    def _pressure(self, condition: _Condition, points: Array, normal: Array, rows: slice) -> Array:
+    def _pressure(self, condition: FlowCondition, points: Array, normal: Array, rows: slice) -> Array:
         """(p - p_inf)/rho = (U^2 - v^2)/2 on a grid of collocation points (n, m, 3)."""
         weights = np.array([2.0 * condition.advance_coefficient, OMEGA])
         shape = points.shape[:2]
@@ -251,12 +251,12 @@ class BladePanelModel:
         velocity = tangential(onset, normal) + SurfaceGradient.on(points).of(potential)
         return np.asarray(0.5 * (np.sum(onset**2, axis=(2, 3)) - np.sum(velocity**2, axis=(2, 3))))
 
-    def blade_pressure(self, condition: _Condition) -> Array:
+    def blade_pressure(self, condition: FlowCondition) -> Array:
         """(n, m) pressures over rho (n = R = 1) at the blade's collocation points."""
         surface = self.grid.surface
         return self._pressure(condition, surface.collocation, surface.normal, slice(0, surface.panels.count))
 
-    def hub_pressure(self, condition: _Condition) -> Array:
+    def hub_pressure(self, condition: FlowCondition) -> Array:
         """(n,) pressures over rho at the hub's collocation points."""
         count = self.grid.surface.panels.count
         pressures = []
@@ -347,6 +347,7 @@ class BladePanelResult:
         radius_ratio: (m,) r/R of the strips.
         circulation: (nJ, m) Gamma/(n D^2) of the strips.
         wake_pitch_ratio: (nJ,) P/D of the aligned wake (nan-free; 0 for "geometric_pitch").
+        conditions: (nJ,) the flow at each J.
         model: the factorised flow, for pressures at any J.
         drag: the section drag.
     """
@@ -355,6 +356,7 @@ class BladePanelResult:
     radius_ratio: Array
     circulation: Array
     wake_pitch_ratio: Array
+    conditions: tuple[FlowCondition, ...]
     model: BladePanelModel
     drag: SectionDrag
 
@@ -364,24 +366,17 @@ class BladePanelResult:
 
         return surface_pressure(self, advance_coefficient, all_blades)
 
-    def cavitation_margin(
-        self,
-        advance_coefficient: float,
-        rotation_rate: float,
-        density: float,
-        pressure_margin_pascal: float,
-        gravity: float = 9.80665,
-    ) -> CavitationMargin:
-        """Least pressure against the vapour pressure; see ``blade_pressure.cavitation_margin``."""
-        from hpsop_core.hydro.blade_pressure import cavitation_margin
+    def pressure_table(self) -> BladePressureTable:
+        """The blades' pressures at the result's J; their margin against cavitation is a method of the table."""
+        from hpsop_core.hydro.blade_pressure import BladePressureTable
 
-        return cavitation_margin(self, advance_coefficient, rotation_rate, density, pressure_margin_pascal, gravity)
+        return BladePressureTable.of(self)
 
 
 def forces_of(result: BladePanelResult, forces: Literal["circulation", "pressure"]) -> tuple[Array, Array]:
     """(KT, KQ) at the J of ``result``, computed from circulations or pressures whatever its settings say."""
     model = replace(result.model, settings=replace(result.model.settings, forces=forces))
-    values = [model.forces(model.condition(float(j)), result.drag) for j in result.open_water.advance_coefficient]
+    values = [model.forces(condition, result.drag) for condition in result.conditions]
     thrust, torque = np.array(values).reshape(-1, 2).T
     return thrust, torque
 
@@ -411,7 +406,7 @@ def solve(
     if advance.ndim != 1 or not np.all(np.isfinite(advance)) or np.any(advance < 0.0):
         raise InputError("advance coefficients must be finite numbers of at least 0")
     # One thread: the matrix is small, and the same bits must come out whatever runs beside.
-    with threadpool_limits(limits=1):
+    with one_blas_thread():
         try:
             model = blade_panel_model(propeller, settings, drag.viscous)
         except SolverFailure:
@@ -427,12 +422,13 @@ def solve(
     reynolds = None
     if drag.rotation_rate is not None and drag.viscosity is not None:
         reynolds = reynolds_number_07R(propeller, advance, drag.rotation_rate, drag.viscosity)
-    open_water = OpenWater(advance, forces[:, 0], forces[:, 1], reynolds, 2, SOLVER, settings.text)
+    open_water = OpenWater(advance, forces[:, 0], forces[:, 1], reynolds, 2, SOLVER, model.settings.text)
     return BladePanelResult(
         open_water,
         model.strips.radius,
         np.array([c.jump for c in conditions]).reshape(advance.size, -1) / 4.0,
         np.array([0.5 * c.wake_pitch for c in conditions]),
+        tuple(conditions),
         model,
         drag,
     )

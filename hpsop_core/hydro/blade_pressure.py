@@ -18,7 +18,6 @@ from hpsop_core.hydro.blade_panels import BladePanelResult
 from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array, IntArray
 
-
 MARGIN_RADIUS = 0.9
 """The margin against cavitation is taken from the hub to this r/R."""
 
@@ -187,26 +186,28 @@ class BladePressureTable:
                 f"cavitation margin: J = {advance_coefficient:g} lies outside the table, {lowest:g} to {highest:g}"
             )
         tip_radius = 0.5 * diameter
-        dynamic = 0.5 * (4.0 * advance_coefficient**2 + (OMEGA * self.radius) ** 2)
-        coefficient = self.at(advance_coefficient) / dynamic
-        head = pressure_margin_pascal - density * gravity * tip_radius * self.radius
-        sigma = head / (density * (rotation_rate * tip_radius) ** 2 * dynamic)
+        scale = density * (rotation_rate * tip_radius) ** 2
+
+        def dynamic(radius: Array) -> Array:
+            return np.asarray(0.5 * (4.0 * advance_coefficient**2 + (OMEGA * radius) ** 2))
+
+        def cavitation_number(radius: Array) -> Array:
+            head = pressure_margin_pascal - density * gravity * tip_radius * radius
+            return np.asarray(head / (scale * dynamic(radius)))
+
+        coefficient = self.at(advance_coefficient) / dynamic(self.radius)
         radii = np.linspace(self.hub_ratio + 0.1 * (1.0 - self.hub_ratio), MARGIN_RADIUS, _MARGIN_STATIONS)
-        coefficient_there = self._along_the_radius(coefficient, radii)
-        sigma_there = self._along_the_radius(sigma, radii)
+        coefficient_there = np.stack([np.interp(radii, self.strip_radius, row) for row in coefficient])
+        sigma_there = cavitation_number(radii)
         reserve = coefficient_there + sigma_there
         row, place = np.unravel_index(int(np.argmin(reserve)), reserve.shape)
         back = slice(self.area.shape[0] // 2, None)
         area = self.area[back, 1:-1]
-        evaporates = (coefficient + sigma)[back, 1:-1] < 0.0
+        evaporates = (coefficient + cavitation_number(self.radius))[back, 1:-1] < 0.0
         return CavitationMargin(
             float(reserve[row, place]),
             float(coefficient_there[row, place]),
-            float(sigma_there[row, place]),
+            float(sigma_there[place]),
             float(radii[place]),
             float(np.sum(area[evaporates]) / np.sum(area)),
         )
-
-    def _along_the_radius(self, values: Array, radii: Array) -> Array:
-        """(n, k): values (n, m) of the strips, linear in the radius, at radii (k,)."""
-        return np.stack([np.interp(radii, self.strip_radius, row) for row in values])

@@ -68,8 +68,11 @@ def test_bad_pressure_requests() -> None:
     result = solve(propeller_family(PARENT, 9.0, 3), [0.7], INVISCID)
     with pytest.raises(InputError, match="advance coefficient"):
         result.surface_pressure(float("nan"))
-    with pytest.raises(InputError, match="cavitation margin"):
-        result.cavitation_margin(0.7, 0.0, 1025.0, 1e5)
+    table = result.pressure_table()
+    with pytest.raises(InputError, match="cavitation margin: diameter, rotation_rate and density"):
+        table.margin(0.7, 9.0, 0.0, 1025.0, 1e5)
+    with pytest.raises(InputError, match=r"cavitation margin: J = 0\.8 lies outside"):
+        table.margin(0.8, 9.0, 1.0, 1025.0, 1e5)
 
 
 def test_extreme_loadings_stay_finite() -> None:

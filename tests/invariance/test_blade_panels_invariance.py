@@ -186,16 +186,6 @@ def test_surface_pressure_is_a_closed_body_with_the_right_thrust() -> None:
     assert one.quads.shape[0] * 3 == surface.quads.shape[0]
 
 
-def test_cavitation_margin_falls_with_the_pressure() -> None:
-    result = solve(propeller_family(load_propeller(), 9.0, 3), [0.65], INVISCID, BladePanelSettings(40, 12))
-    deep = result.cavitation_margin(0.65, 1.0, 1025.0, 6.0e5)
-    shallow = result.cavitation_margin(0.65, 1.0, 1025.0, 1.5e5)
-    assert deep.margin > shallow.margin
-    assert deep.cavitating_share <= shallow.cavitating_share
-    assert 0.2 < deep.radius_ratio < 1.0
-    assert deep.margin == pytest.approx(deep.minimum_pressure_coefficient + deep.sigma)
-
-
 def test_result_travels_between_processes() -> None:
     result = solve(propeller_family(load_propeller(), 9.0, 3), [0.7], SectionDrag.full_scale())
     again = pickle.loads(pickle.dumps(result))  # noqa: S301 our own bytes
