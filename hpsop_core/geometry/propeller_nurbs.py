@@ -45,8 +45,11 @@ def _radii(propeller: Propeller, count: int) -> Array:
     return np.asarray(radii)
 
 
-def _outline(propeller: Propeller, radii: Array, chord_points: int) -> Array:
-    """Closed sections (nr, 2 nc - 1, 3) in m."""
+def blade_outlines(propeller: Propeller, radii: Array, chord_points: int) -> Array:
+    """Closed sections of the key blade at r/R = radii (nr,): (nr, 2 nc - 1, 3) in m, propeller axes.
+
+    From the trailing edge along the back to the leading edge and along the face back again.
+    """
     sections = finite_tip_sections(propeller.table, radii)
     fractions = cosine_chord_fractions(chord_points)
     back, face = blade_points(sections, fractions, True), blade_points(sections, fractions, False)
@@ -55,13 +58,13 @@ def _outline(propeller: Propeller, radii: Array, chord_points: int) -> Array:
 
 def blade_nurbs(propeller: Propeller) -> BladeSurface:
     """Interpolate the key blade by a bicubic B-spline surface and measure how far it is off in between."""
-    grid = _outline(propeller, _radii(propeller, _SPAN_STATIONS), _CHORD_STATIONS)
+    grid = blade_outlines(propeller, _radii(propeller, _SPAN_STATIONS), _CHORD_STATIONS)
     knots_u, along = _interpolate(grid)
     knots_v, across = _interpolate(np.swapaxes(along, 0, 1))
     control = np.swapaxes(across, 0, 1)
     surface = NurbsSurface(_DEGREE, _DEGREE, knots_u, knots_v, control, np.ones(control.shape[:2]))
     # twice as many sections and points: half of them lie midway between the interpolated ones
-    fine = _outline(propeller, _radii(propeller, 2 * _SPAN_STATIONS - 1), 2 * _CHORD_STATIONS - 1)
+    fine = blade_outlines(propeller, _radii(propeller, 2 * _SPAN_STATIONS - 1), 2 * _CHORD_STATIONS - 1)
     u, v = np.linspace(0.0, 1.0, fine.shape[0]), np.linspace(0.0, 1.0, fine.shape[1])
     points, along_u, along_v = surface.derivatives(u, v)
     normal = np.cross(along_u, along_v)

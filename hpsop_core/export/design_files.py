@@ -1,0 +1,205 @@
+"""A design of a run as files to take away: CAD, meshes, tables, numbers."""
+
+from __future__ import annotations
+
+import json
+import os
+import shutil
+import tempfile
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from hpsop_core import __version__
+from hpsop_core.case import Case
+from hpsop_core.errors import InputError
+from hpsop_core.evaluation import Reference, design_hull, design_propeller, reference_for
+from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.export import tables
+from hpsop_core.geometry.hull import Hull
+from hpsop_core.geometry.propeller import Propeller
+from hpsop_core.runs.reader import RunReader
+from hpsop_core.runs.records import DesignRecord
+
+FORMATS = ("stl", "glb", "3dm", "dxf", "csv", "json")
+
+_ABOUT = """\
+{title}
+Exported by hpsop {version}.
+
+Metres and SI units. Ship axes: x forward from the after perpendicular, y to port, z up from the baseline; the propeller
+stands in its place behind the hull. (design.glb alone follows glTF: y up, starboard = +z.)
+
+{files}
+The surfaces are the very ones that were computed: the NURBS leave the evaluated hull by at most {deviation:.2g} m (the
+longitudinal shift is refitted), the meshes of hull.stl enclose the hull to its deck. Root fillets of the blades are in
+the meshes only.
+{warnings}"""
+
+_MEANING = {
+    "hull.stl": "the whole hull to its deck, one closed solid",
+    "propeller.stl": "blades, fillets, hub and cap, one closed solid, in its place",
+    "design.glb": "hull and propeller for viewers",
+    "design.3dm": "rational NURBS surfaces of hull (both sides), deck, flat ends, blades and hub, on layers",
+    "lines.dxf": "stations, waterlines, buttocks, profile (port side) and blade sections as 3D polylines",
+    "offsets.csv": "half-breadths; 'hpsop resistance --offsets offsets.csv' reads it again",
+    "propeller.csv": "radial table; 'hpsop open-water --geometry propeller.csv' reads it again",
+    "hydrostatics.csv": "hydrostatics and sectional areas",
+    "resistance.csv": "resistance over Froude number",
+    "open_water.csv": "KT, KQ and efficiency over J",
+    "design.json": "everything that is known of the design, as 'hpsop show --design --json' prints it",
+}
+
+
+@dataclass(frozen=True, eq=False)
+class _Design:
+    case: Case
+    record: DesignRecord
+    reference: Callable[[], Reference]
+    hull: Hull
+    propeller: Propeller
+
+    @property
+    def evaluation(self) -> Evaluation:
+        return self.record.evaluation
+
+
+def export_design(
+    run: RunReader, design: int | str, folder: str | Path, formats: Sequence[str] = FORMATS, force: bool = False
+) -> tuple[Path, ...]:
+    """Write a design's files into a folder: all of them, or none.
+
+    Args:
+        run: the run that has it.
+        design: its id, "initial", "compromise" or "knee".
+        folder: made if it is not there.
+        formats: any of ``FORMATS``.
+        force: write into a folder that holds something already; files of the same name are replaced, others stay.
+
+    Returns:
+        The files written.
+
+    Raises:
+        InputError: no such design or format, a failed design, or a folder that cannot be used.
+        SolverFailure: the form or its resistance curve cannot be computed.
+    """
+    wanted = checked_formats(formats)
+    record = run.design(design)
+    if not record.evaluation.ok:
+        raise InputError(
+            f"{run.path}: design {record.id} failed ({record.evaluation.reason}) and has no shape; choose another one"
+        )
+    target = Path(folder)
+    _check_target(target, force)
+    case, variables = run.case, record.evaluation.variables
+
+    def reference() -> Reference:
+        level = record.evaluation.level
+        stored = run.reference(level)
+        return reference_for(case, level) if stored is None else Reference.from_dict(stored)
+
+    data = _Design(case, record, reference, design_hull(case, variables), design_propeller(case, variables))
+    try:
+        target.parent.mkdir(parents=True, exist_ok=True)
+        # On the same file system as the target, so that every file appears whole or not at all.
+        with tempfile.TemporaryDirectory(prefix=".hpsop-export-", dir=target.parent) as workshop:
+            made = _write(data, Path(workshop), wanted)
+            target.mkdir(exist_ok=True)
+            for file in made:
+                os.replace(file, target / file.name)
+    except OSError as error:
+        raise InputError(f"{target}: cannot be written ({error.strerror or error}); choose another folder") from error
+    return tuple(target / file.name for file in made)
+
+
+def zip_design(run: RunReader, design: int | str, formats: Sequence[str] = FORMATS) -> bytes:
+    """The files of ``export_design`` as one ZIP archive, for a download.
+
+    Raises:
+        InputError, SolverFailure: as ``export_design``.
+    """
+    with tempfile.TemporaryDirectory(prefix="hpsop-export-") as workshop:
+        folder = Path(workshop) / "design"
+        export_design(run, design, folder, formats)
+        return Path(shutil.make_archive(str(Path(workshop) / "archive"), "zip", folder)).read_bytes()
+
+
+def checked_formats(formats: Sequence[str]) -> tuple[str, ...]:
+    """The formats in their usual order, each once.
+
+    Raises:
+        InputError: one that is not known, or none.
+    """
+    for name in formats:
+        if name not in FORMATS:
+            raise InputError(f"--formats: '{name}' is not a format; give any of {','.join(FORMATS)}")
+    if not formats:
+        raise InputError(f"--formats: name at least one of {','.join(FORMATS)}")
+    return tuple(name for name in FORMATS if name in formats)
+
+
+def _check_target(target: Path, force: bool) -> None:
+    if target.exists() and not target.is_dir():
+        raise InputError(f"{target}: is a file; --to needs a folder")
+    try:
+        occupied = target.is_dir() and any(target.iterdir())
+    except OSError as error:
+        raise InputError(f"{target}: cannot be read ({error.strerror}); choose another folder") from error
+    if occupied and not force:
+        raise InputError(f"{target}: is not empty; give --force to replace files in it, or another folder")
+
+
+def _write(design: _Design, folder: Path, formats: Sequence[str]) -> list[Path]:
+    deviation = 0.0
+    if "stl" in formats:
+        from hpsop_core.export.meshes import write_stl
+
+        write_stl(folder / "hull.stl", folder / "propeller.stl", design.hull, design.propeller)
+    if "glb" in formats:
+        from hpsop_core.export.meshes import write_glb
+
+        write_glb(folder / "design.glb", design.hull, design.propeller)
+    if "3dm" in formats:
+        from hpsop_core.export.rhino import write_3dm
+        from hpsop_core.export.surfaces import design_surfaces
+
+        surfaces, deviation = design_surfaces(design.hull, design.propeller)
+        write_3dm(folder / "design.3dm", surfaces, _title(design))
+    if "dxf" in formats:
+        from hpsop_core.export.lines import write_dxf
+
+        write_dxf(folder / "lines.dxf", design.hull, design.propeller)
+    texts: dict[str, str] = {}
+    if "csv" in formats:
+        texts |= {
+            "offsets.csv": tables.offsets_table(design.hull),
+            "propeller.csv": tables.propeller_table(design.propeller),
+            "hydrostatics.csv": tables.hydrostatics_table(design.hull),
+            "resistance.csv": tables.resistance_table(design.case, design.evaluation, design.reference()),
+            "open_water.csv": tables.open_water_table(design.evaluation),
+        }
+    if "json" in formats:
+        texts["design.json"] = json.dumps(design.record.as_dict(), indent=1, allow_nan=False) + "\n"
+    for name, text in texts.items():
+        (folder / name).write_text(text, encoding="utf-8")
+    made = sorted(folder.iterdir(), key=lambda file: list(_MEANING).index(file.name))
+    about = _ABOUT.format(
+        title=_title(design),
+        version=__version__,
+        files="".join(f"{file.name:<18s}{_MEANING[file.name]}\n" for file in made),
+        deviation=max(deviation, 1e-6),
+        warnings="".join(f"\nWarning: {text}\n" for text in design.evaluation.warnings),
+    )
+    readme = folder / "README.txt"
+    readme.write_text(about, encoding="utf-8")
+    return [*made, readme]
+
+
+def _title(design: _Design) -> str:
+    h, p = design.hull, design.propeller
+    return (
+        f"{design.case.name}, design {design.record.id} (level {design.evaluation.level}): "
+        f"L {h.length:.2f} m, B {h.breadth:.2f} m, d {h.draft:.2f} m, CB {h.hydrostatics.block_coefficient:.4f}; "
+        f"propeller D {p.diameter:.3f} m, Z {p.blade_count}, P/D at 0.7 R {p.pitch_diameter_ratio_07R:.4f}, "
+        f"EAR {p.expanded_area_ratio:.3f}"
+    )

@@ -1,0 +1,92 @@
+"""`hpsop export` and its mistakes: one line each, and never half a folder."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+from hpsop_core import load_case, optimize
+from hpsop_core.cli import main
+from hpsop_core.errors import InputError
+from hpsop_core.export import design_files, tables
+from hpsop_core.runs.reader import RunReader
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> RunReader:
+    file = tmp_path_factory.mktemp("run") / "small.hpsop"
+    return optimize(
+        load_case("dtc-p4119-paper"), file, generations=1, level1_generations=1, population=4, seed=1, workers=1
+    )
+
+
+def test_the_command_lists_what_it_wrote(run: RunReader, tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    folder = tmp_path / "a" / "b"
+    words = ["export", str(run.path), "--design", "initial", "--to", str(folder), "--formats", "json,csv"]
+    assert main(words) == 0
+    written = {Path(line.split("  ")[0]).name for line in capsys.readouterr().out.splitlines()}
+    assert written == {file.name for file in folder.iterdir()}
+    assert {"design.json", "offsets.csv", "README.txt"} <= written and "design.3dm" not in written
+    assert [entry.name for entry in folder.parent.iterdir()] == ["b"]
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["--design", "7000"], "has no design 7000"),
+        (["--design", "best"], "--design best: give a design's number, initial, compromise or knee"),
+        (["--design", "initial", "--formats", "igs"], "'igs' is not a format; give any of stl,glb,3dm,dxf,csv,json"),
+        (["--design", "initial", "--formats", ","], "name at least one of"),
+    ],
+)
+def test_mistakes_are_one_line(
+    run: RunReader, tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], told: str
+) -> None:
+    folder = tmp_path / "out"
+    assert main(["export", str(run.path), "--to", str(folder), *words]) == 2
+    error = capsys.readouterr().err
+    assert told in error and error.count("\n") == 1
+    assert not folder.exists()
+
+
+def test_a_folder_with_something_in_it_is_left_alone(run: RunReader, tmp_path: Path) -> None:
+    mine = tmp_path / "design.json"
+    mine.write_text("mine")
+    with pytest.raises(InputError, match="is not empty; give --force"):
+        design_files.export_design(run, "initial", tmp_path, ("json",))
+    assert mine.read_text() == "mine"
+    (tmp_path / "other.txt").write_text("stays")
+    design_files.export_design(run, "initial", tmp_path, ("json",), force=True)
+    assert mine.read_text() != "mine" and (tmp_path / "other.txt").read_text() == "stays"
+
+
+def test_a_file_is_no_folder(run: RunReader, tmp_path: Path) -> None:
+    file = tmp_path / "taken"
+    file.write_text("")
+    with pytest.raises(InputError, match="is a file; --to needs a folder"):
+        design_files.export_design(run, "initial", file, force=True)
+    with pytest.raises(InputError, match="cannot be written"):
+        design_files.export_design(run, "initial", file / "below", ("json",))
+
+
+def test_an_export_that_breaks_off_leaves_nothing(
+    run: RunReader, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(_hull: object) -> str:
+        raise OSError(28, "No space left on device")
+
+    monkeypatch.setattr(tables, "hydrostatics_table", full)
+    with pytest.raises(InputError, match="No space left on device"):
+        design_files.export_design(run, "initial", tmp_path / "out", ("json", "csv"))
+    assert not list(tmp_path.iterdir())
+
+
+def test_the_download_holds_the_same_files(run: RunReader, tmp_path: Path) -> None:
+    import io
+    import zipfile
+
+    archive = zipfile.ZipFile(io.BytesIO(design_files.zip_design(run, "initial", ("json", "csv"))))
+    files = design_files.export_design(run, "initial", tmp_path / "out", ("json", "csv"))
+    assert sorted(archive.namelist()) == sorted(file.name for file in files)
+    assert all(archive.read(file.name) == file.read_bytes() for file in files)
