@@ -142,19 +142,8 @@ class Physics:
 
 def _hull_lines(case: Case, variables: DesignVariables) -> HullLines:
     hull = design_hull(case, variables)
-    v = np.linspace(0.0, 1.0, 29)
-    x = _STATIONS / 20.0 * hull.length
-    parts: dict[int, list[np.ndarray]] = {}
-    for patch in hull.patches:
-        # all stations of a patch at once: finding their parameters is what costs
-        first, last = hull.station_map(np.array(hull.parent.extent(patch.name)))
-        inside = np.flatnonzero((x > first - 1e-6) & (x < last + 1e-6))
-        if not inside.size:
-            continue
-        grid = patch.evaluate(patch.parameter(x[inside]), v)
-        for index, line in zip(inside.tolist(), grid, strict=True):
-            parts.setdefault(index, []).append(line[:, 1:])
-    sections = [(float(_STATIONS[index]), tuple(lines)) for index, lines in sorted(parts.items())]
+    cut = zip(_STATIONS, hull.sections(_STATIONS / 20.0 * hull.length, points=29), strict=True)
+    sections = [(float(station), tuple(line[:, 1:] for line in lines)) for station, lines in cut if lines]
     hydrostatics = hull.hydrostatics
     return HullLines(
         sections=tuple(sections),

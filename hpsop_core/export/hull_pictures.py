@@ -16,7 +16,6 @@ from hpsop_core.errors import InputError
 from hpsop_core.export.hull_shading import ShadedPart, render
 from hpsop_core.geometry.hull import Hull, ParentHull, load_parent_hull
 from hpsop_core.geometry.hull_mesh import hull_view_parts
-from hpsop_core.typing_aliases import Array
 
 BLOCK_COEFFICIENTS = (0.60, 0.63, 0.66, 0.69, 0.72, 0.75)
 CENTRE_SHIFTS = (-0.01, -0.005, 0.0, 0.005, 0.01)
@@ -37,26 +36,13 @@ def _pyplot() -> Any:
     return pyplot
 
 
-def section_lines(hull: Hull, x: float, underwater_only: bool = False) -> list[Array]:
-    """The section at x as lines (k, 2) of y and z, one for every patch that it meets, m."""
-    lines = []
-    v = np.linspace(0.0, 1.0, 161)
-    for patch in hull.patches:
-        if underwater_only and not patch.underwater:
-            continue
-        ends = hull.station_map(np.array(hull.parent.extent(patch.name)))
-        if ends[0] <= x < ends[1]:
-            lines.append(patch.evaluate(patch.parameter(np.array([x])), v)[0][:, 1:])
-    return lines
-
-
 def body_plan(axes: Any, hull: Hull, stations: Sequence[float], underwater_only: bool = False, **style: Any) -> None:
     """Sections into axes: afterbody to the left, forebody to the right."""
     middle = 0.5 * hull.length
-    for x in stations:
+    for x, lines in zip(stations, hull.sections(np.array(stations), 161, underwater_only), strict=True):
         side = 1.0 if x > middle else -1.0
-        for line in section_lines(hull, x, underwater_only):
-            axes.plot(side * line[:, 0], line[:, 1], **style)
+        for line in lines:
+            axes.plot(side * line[:, 1], line[:, 2], **style)
     axes.set_aspect("equal")
 
 

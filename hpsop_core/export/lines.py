@@ -32,7 +32,6 @@ BUTTOCKS = np.array([0.1, 0.2, 0.3, 0.4])
 """In breadths from the centreplane."""
 
 SECTION_RADII = (0.25, 0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
-_SECTION_POINTS = 101
 _BLADE_POINTS = 41
 # A plane that passes through vertices of the mesh cuts ambiguous triangles: it is moved by this part of the length.
 _ASIDE = 1e-6
@@ -75,21 +74,10 @@ def _cut(mesh: trimesh.Trimesh, axis: int, at: float, length: float) -> list[Arr
     return chained(np.asarray(segments)) if len(segments) else []
 
 
-def section_lines(hull: Hull, x: float) -> list[Array]:
-    """The port half of the section at x, exact on the surface: one line (k, 3) for every patch that it meets, m."""
-    lines = []
-    v = np.linspace(0.0, 1.0, _SECTION_POINTS)
-    for patch in hull.patches:
-        first, last = hull.station_map(np.array(hull.parent.extent(patch.name)))
-        if first <= x < last:
-            lines.append(patch.evaluate(patch.parameter(np.array([x])), v)[0])
-    return lines
-
-
 def design_lines(hull: Hull, propeller: Propeller) -> Iterator[tuple[str, Array]]:
     """(layer, polyline (k, 3) in m, ship axes): the hull's port side, and the sections of every blade."""
-    for x in np.concatenate([STATIONS / 10.0, ENDS]) * hull.length:
-        for line in section_lines(hull, float(x)):
+    for lines in hull.sections(np.concatenate([STATIONS / 10.0, ENDS]) * hull.length):
+        for line in lines:
             yield "STATIONS", line
     mesh = hull_mesh(hull, "export")
     deck = hull.parent.deck_height * hull.scale[2]

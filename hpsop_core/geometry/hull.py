@@ -375,6 +375,24 @@ class Hull:
             pieces.append(points if not pieces else points[1:])
         return np.concatenate(pieces)
 
+    def sections(self, x: Array, points: int = 101, underwater_only: bool = False) -> tuple[tuple[Array, ...], ...]:
+        """The port half of the sections at stations x (m), exact on the surface.
+
+        One line (points, 3) in m, from below upwards, for every patch that a station meets; none beyond the ends.
+        """
+        v = np.linspace(0.0, 1.0, points)
+        found: list[list[Array]] = [[] for _ in x]
+        for patch in self.patches:
+            if underwater_only and not patch.underwater:
+                continue
+            first, last = self.station_map(np.array(self.parent.extent(patch.name)))
+            # A station on the border of two patches belongs to the forward one; all of a patch at once, for speed.
+            inside = np.flatnonzero((x >= first) & (x < last))
+            if len(inside):
+                for index, line in zip(inside, patch.evaluate(patch.parameter(x[inside]), v), strict=True):
+                    found[index].append(line)
+        return tuple(tuple(lines) for lines in found)
+
     def offset_table(self) -> OffsetTable:
         """Half-breadths for thin-ship theory; stations move with the sections, so y is the parent's, scaled."""
         x, z, y = self.parent._table
