@@ -15,7 +15,7 @@ from hpsop_core.geometry.propeller import load_propeller, propeller_family
 from hpsop_core.hydro.blade_grid import blade_grid, helical_wake
 from hpsop_core.hydro.blade_hub_grid import hub_grid
 from hpsop_core.hydro.blade_panels import (
-    WAKE_PITCH_NODES,
+    WAKE_PITCH_COUNT,
     BladePanelModel,
     BladePanelSettings,
     blade_panel_model,
@@ -73,7 +73,7 @@ def main() -> None:
         print(f"Z = {blades}: {count} unknowns, {wake[0].count} wake panels")
         print(f"  panels                                 {panels:7.1f} ms")
         print(f"  assembly and factor                    {assembly:7.1f} ms, of which factor {factor:.1f} ms")
-        print(f"  {len(WAKE_PITCH_NODES)} wakes                                {3 * one_wake:7.1f} ms")
+        print(f"  {WAKE_PITCH_COUNT} wakes                                {WAKE_PITCH_COUNT * one_wake:7.1f} ms")
         print(f"  7 J: Kutta condition, alignment, force {kutta:7.1f} ms")
         print(f"  7 J from nothing                       {best(lambda p=propeller: solve(p, advance, drag)):7.1f} ms")
 

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hpsop_core.geometry.propeller import Propeller, RadialTable, load_propeller, propeller_family
-from hpsop_core.hydro import lifting_line
+from hpsop_core.hydro import blade_panels, lifting_line
 from hpsop_core.hydro.blade_grid import blade_grid
 from hpsop_core.hydro.blade_hub_grid import HubSettings
 from hpsop_core.hydro.blade_panels import BladePanelSettings, forces_of, solve
@@ -99,6 +99,21 @@ def test_forces_on_the_optimisers_grid_and_by_pressures() -> None:
     # integration of pressures misses some suction at the noses: 4 % on 80 x 24 panels
     np.testing.assert_allclose(fine.open_water.thrust_coefficient[working], kt[working], rtol=0.04)
     np.testing.assert_allclose(fine.open_water.torque_coefficient[working], kq[working], rtol=0.04)
+
+
+@pytest.mark.parametrize(("blades", "pitch", "area"), [(2, 1.0, 0.4), (3, 1.05, 0.607), (7, 0.95, 1.0)])
+def test_the_table_of_wakes_is_fine_enough(
+    monkeypatch: pytest.MonkeyPatch, blades: int, pitch: float, area: float
+) -> None:
+    """Four tabulated wakes against nine; the grids are the same."""
+    propeller = propeller_family(load_propeller(), 9.0, blades, pitch, area)
+    advance, drag = [0.1, 0.3, 0.5, 0.7, 0.9, 1.1], SectionDrag.full_scale()
+    usual = solve(propeller, advance, drag).open_water
+    monkeypatch.setattr(blade_panels, "WAKE_PITCH_COUNT", 9)
+    many = solve(propeller, advance, drag).open_water
+    # a fifth of what the optimiser's grid may be off
+    np.testing.assert_allclose(usual.thrust_coefficient, many.thrust_coefficient, rtol=0.002)
+    np.testing.assert_allclose(usual.torque_coefficient, many.torque_coefficient, rtol=0.002)
 
 
 def test_smooth_in_pitch_and_area() -> None:
