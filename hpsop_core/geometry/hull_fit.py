@@ -19,6 +19,8 @@ from hpsop_core.geometry.nurbs import NurbsSurface, basis_matrix, clamped_knots,
 from hpsop_core.typing_aliases import Array
 
 DEGREE = 3
+# Each round holds the control points that passed a limit; later rounds move few.
+HOLDING_ROUNDS = 4
 
 
 @dataclass(frozen=True)
@@ -188,6 +190,7 @@ def fit_patch(
     smoothing: float = 5e-2,
     least_half_breadth: float = 2e-3,
     edge: Array | None = None,
+    heights: tuple[float, float] | None = None,
 ) -> PatchFit:
     """Fit y and z of a control net to sections by least squares with parameter correction.
 
@@ -202,6 +205,8 @@ def fit_patch(
         least_half_breadth: free control points keep this distance from the centreplane, m: the sides never cross.
         edge: control points (nv, 3) of a shared edge in u; sections then spread v along their girth as that edge does,
             so that parameter lines run on smoothly from the neighbour.
+        heights: lowest and highest z of free control points, m, so that the surface stays between them: a profile that
+            jumps from one station to the next would else swing below the keel or above the waterline.
 
     Returns:
         The surface and the deviation of the given points.
@@ -212,9 +217,10 @@ def fit_patch(
     points = np.concatenate([*dense, *(section.points for section in sections)])
     u = np.concatenate([np.repeat(u_of, samples), np.repeat(u_of, [len(s.points) for s in sections])])
     v = np.concatenate([np.tile(fractions, len(sections)), *(s.chord_fractions() for s in sections)])
-    if edge is not None:
-        v = _spread_of(knots_v, edge)(v)
+    # Ends are told before the spreading: its rounding must not decide which points are held there.
     pinned = (v == 0.0) | (v == 1.0)
+    if edge is not None:
+        v = np.where(pinned, v, _spread_of(knots_v, edge)(v))
     weight = np.where(pinned, 4.0, 1.0)
     nu, nv = len(stations.control_x), len(knots_v) - DEGREE - 1
     net = np.zeros((nu, nv, 3))
@@ -227,8 +233,8 @@ def fit_patch(
             moved = _projected(surface, u, v, points, 2)
             v = np.where(pinned, v, moved)
         design = sparse.diags(weight) @ _row_kronecker(left, basis_matrix(knots_v, DEGREE, v))
-        for axis, fixed in ((0, fixed_y), (1, fixed_z)):
-            net[..., axis + 1] = _solve(design, weight * points[:, axis], rough, fixed)
+        for axis, fixed, limits in ((0, fixed_y, None), (1, fixed_z, heights)):
+            net[..., axis + 1] = _solve(design, weight * points[:, axis], rough, fixed, limits)
         net[..., 1] = np.where(np.isnan(fixed_y), np.maximum(net[..., 1], least_half_breadth), net[..., 1])
         surface = NurbsSurface(DEGREE, DEGREE, stations.knots, knots_v, net, np.ones((nu, nv)))
     if surface is None:
@@ -247,13 +253,29 @@ def _spread_of(knots_v: Array, edge: Array) -> PchipInterpolator:
     return PchipInterpolator(fraction, v)
 
 
-def _solve(design: sparse.csr_matrix, target: Array, rough: sparse.csr_matrix, fixed: Array) -> Array:
+def _solve(
+    design: sparse.csr_matrix,
+    target: Array,
+    rough: sparse.csr_matrix,
+    fixed: Array,
+    limits: tuple[float, float] | None,
+) -> Array:
+    """Least squares for the free control points; those beyond a limit are held there and the rest solved again."""
     known = ~np.isnan(fixed.ravel())
     values = np.where(known, np.nan_to_num(fixed.ravel()), 0.0)
     normal = (design.T @ design + rough.T @ rough).tocsr()
-    right = design.T @ target - normal @ values
-    free = np.flatnonzero(~known)
-    values[free] = linalg.solve(normal[free][:, free].toarray(), right[free], assume_a="pos")
+    for _ in range(HOLDING_ROUNDS):
+        free = np.flatnonzero(~known)
+        held = np.where(known, values, 0.0)
+        right = design.T @ target - normal @ held
+        values[free] = linalg.solve(normal[free][:, free].toarray(), right[free], assume_a="pos")
+        if limits is None:
+            break
+        beyond = ~known & ((values < limits[0]) | (values > limits[1]))
+        if not np.any(beyond):
+            break
+        values[beyond] = np.clip(values[beyond], *limits)
+        known |= beyond
     return np.asarray(values.reshape(fixed.shape))
 
 

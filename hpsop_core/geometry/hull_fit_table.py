@@ -44,6 +44,10 @@ MOST_SPANS = 48
 FIT: FitSettings = {"smoothing": 5e-3, "rounds": 3}
 # Where a closing curve's last two values point to the zero reading of the table or beyond it, that reading is the end.
 SNAP = 0.5
+# A step of the aft profile by this part of the draft between two stations is a post, not a slope.
+LEAST_POST = 0.25
+# Control points may lie this part of the draft beyond the heights of the points, as those of a rounded edge must.
+HEIGHT_ROOM = 0.15
 # Without a stern boss in the table: the reference ship's proportions (5.0 m of 14.5 m).
 SHAFT_HEIGHT_TO_DRAFT = 5.0 / 14.5
 WALL_HEIGHT_TO_DRAFT = 0.5
@@ -183,11 +187,38 @@ def _end(table: HalfBreadths, stations: Sequence[_Station], forward: bool, draft
     index = int(np.searchsorted(table.x, near.x)) + (1 if forward else -1)
     if index < 0 or index >= len(table.x):
         return _End(near.x, None)
+    rising = _overhang(table, index, near, next_one, draft)
+    if rising is not None:
+        return _End(rising, draft)
     width, next_width = (float(np.max(s.points[:, 0])) for s in (near, next_one))
     x = _closing(np.array([table.x[index], near.x, next_one.x]), np.array([width, next_width]))
     slope = (near.points[0, 1] - next_one.points[0, 1]) / (near.x - next_one.x)
     bottom = float(np.clip(near.points[0, 1] + slope * (x - near.x), table.z[0], draft))
     return _End(x, bottom)
+
+
+def _overhang(table: HalfBreadths, index: int, near: _Station, next_one: _Station, draft: float) -> float | None:
+    """Where a profile that rises out of the water (counter, cruiser stern, raked bow) passes the waterline.
+
+    Args:
+        table, draft: the hull.
+        index: the station beyond the last one in the water.
+        near, next_one: the last two stations in the water.
+
+    Returns:
+        x on the straight line between the profile's heights at both stations; None where the profile does not rise to
+        that station or the hull does not go on above the water.
+    """
+    positive = np.flatnonzero(table.y[index] > 0.0)
+    bottom = float(near.points[0, 1])
+    if len(positive) == 0 or positive[0] == 0 or bottom <= float(next_one.points[0, 1]):
+        return None
+    first = int(positive[0])
+    second = min(first + 1, len(table.z) - 1)
+    above = _closing(table.z[[first - 1, first, second]], table.y[index, [first, second]])
+    if above <= draft or bottom >= draft:
+        return None
+    return float(near.x + (table.x[index] - near.x) * (draft - bottom) / (above - bottom))
 
 
 def _with_post(section: Array, draft: float) -> tuple[Array, float]:
@@ -232,6 +263,21 @@ def _aperture(stations: Sequence[_Station]) -> int | None:
     return split[-1]
 
 
+def _stern_post(stations: Sequence[_Station], aft: int) -> int | None:
+    """Index of the station where the profile steps down to the keel: a post below a counter, without an aperture.
+
+    The step is taken for a post where it is a quarter of the draft or more and steeper than 45 degrees.
+    """
+    half = stations[aft : max(aft + 2, len(stations) // 2)]
+    bottoms = [float(station.points[0, 1]) for station in half]
+    top = float(half[0].points[-1, 1])
+    for k in range(len(half) - 1):
+        step = bottoms[k] - bottoms[k + 1]
+        if step > LEAST_POST * top and step > half[k + 1].x - half[k].x:
+            return aft + k
+    return None
+
+
 def _row_zero_from(knots: Array, start: float) -> int:
     """First control point of those whose basis functions live at or above the knot ``start``."""
     if start >= 1.0:
@@ -258,7 +304,9 @@ def fit_underwater(table: HalfBreadths, draft: float) -> UnderwaterFit:
     floating = [k for k, station in enumerate(stations) if station.surface]
     aft, forward = floating[0], floating[-1]
     opening = _aperture(stations)
-    first = aft if opening is None else opening
+    pillar = _stern_post(stations, aft) if opening is None else None
+    border = opening if opening is not None else pillar
+    first = aft if border is None else border
     sections = [Section(s.x, s.points) for s in stations[first : forward + 1] if s.surface]
     rows = int(np.sum(table.z < draft))
     interior = list(np.linspace(0.0, 1.0, int(np.clip(rows, 8, 22)) + 1)[1:-1])
@@ -273,15 +321,18 @@ def fit_underwater(table: HalfBreadths, draft: float) -> UnderwaterFit:
     else:
         fore_end = _end(table, stations[first : forward + 1], True, draft)
     post = (0.0, 0.0)
-    if opening is None:
-        aft_end = _end(table, stations[aft : forward + 1], False, draft)
-    else:
-        border = stations[opening]
-        points, post = _with_aperture(border)
-        sections[0] = Section(border.x, points)
-        aft_end = _End(border.x, None)
+    if opening is not None:
+        points, post = _with_aperture(stations[opening])
         low, high = post
         interior = sorted([k for k in interior if not low - 0.02 < k < high + 0.02] + [low, high])
+    elif pillar is not None:
+        points, post = _above_post(stations[pillar], float(stations[pillar + 1].points[0, 1]))
+        interior = sorted([k for k in interior if abs(k - post[1]) > 0.02] + [post[1]])
+    if border is None:
+        aft_end = _end(table, stations[aft : forward + 1], False, draft)
+    else:
+        sections[0] = Section(stations[border].x, points)
+        aft_end = _End(stations[border].x, None)
     knots = knots_at(interior)
     x = np.unique(np.concatenate([[aft_end.x], [s.x for s in sections], [fore_end.x]]))
     station_map = StationMap.through(_smooth_knots(x, MOST_SPANS).tolist(), False, False)
@@ -296,21 +347,28 @@ def fit_underwater(table: HalfBreadths, draft: float) -> UnderwaterFit:
     if opening is not None:
         at = int(np.searchsorted(knots, post[0], side="right")) - 1
         fixed_y[0, at - DEGREE : at + 1] = 0.0
+    elif pillar is not None:
+        fixed_y[0, : int(np.searchsorted(knots, post[1]))] = 0.0
     elif not _pin_end(fixed_y, fixed_z, 0, aft_end, draft, knots):
         caps.append(("main", "first"))
     least = 1e-7 * float(table.x[-1] - table.x[0])
-    fits = {"main": fit_patch(sections, station_map, knots, fixed_y, fixed_z, **FIT, least_half_breadth=least)}
+    heights = (float(table.z[0]) - HEIGHT_ROOM * draft, draft)
+    fits = {"main": fit_patch(sections, station_map, knots, fixed_y, fixed_z, **FIT, least_half_breadth=least,
+                              heights=heights)}  # fmt: skip
     girth = {"main": ("main", 0.0, 1.0)}
     net = fits["main"].surface.control_points
     if bulb_part > 0.0:
-        fits["bulb"], flat = _fit_bulb(table, ahead, knots, net[-1], bulb_part, least)
+        fits["bulb"], flat = _fit_bulb(table, ahead, draft, knots, net[-1], bulb_part, least)
         girth["bulb"] = ("main", 0.0, bulb_part)
         caps += [("bulb", "last")] if flat else []
-    if opening is not None:
-        girth |= {"counter": ("main", post[1], 1.0), "skeg": ("main", 0.0, post[0])}
-        end = _end(table, stations[aft : opening + 1], False, draft)
-        fits["counter"] = _fit_counter(stations[aft:opening], end, draft, knots, net[0], post[1], least)
+    if border is not None:
+        girth["counter"] = ("main", post[1], 1.0)
+        end = _end(table, stations[aft : border + 2], False, draft)
+        above = stations[aft:border] or stations[border : border + 1]
+        fits["counter"] = _fit_counter(above, end, draft, knots, net[0], post[1], least)
         caps += [("counter", "first")] if end.bottom is None else []
+    if opening is not None:
+        girth["skeg"] = ("main", 0.0, post[0])
         fits["skeg"] = _fit_skeg([s for s in stations[:opening] if s.skeg is not None], knots, net[0], post[0], least)
         caps.append(("skeg", "first"))
     return UnderwaterFit(fits, girth, caps)
@@ -328,6 +386,14 @@ def _with_aperture(station: _Station) -> tuple[Array, tuple[float, float]]:
     return whole.points, (float(fractions[first]), float(fractions[first + 6]))
 
 
+def _above_post(station: _Station, keel: float) -> tuple[Array, tuple[float, float]]:
+    """A post from the keel up to the station's section, both as one section, and the chord fractions of the post."""
+    high = float(station.points[0, 1])
+    post = np.column_stack([np.zeros(6), np.linspace(keel, high, 7)[:-1]])
+    whole = Section(station.x, np.vstack([post, station.points]))
+    return whole.points, (0.0, float(whole.chord_fractions()[6]))
+
+
 def _fit_counter(
     stations: Sequence[_Station], end: _End, draft: float, knots: Array, edge: Array, start: float, least: float
 ) -> PatchFit:
@@ -340,7 +406,9 @@ def _fit_counter(
     _pin_end(fixed_y, fixed_z, 0, end, draft, knots_c)
     fixed_y[-1], fixed_z[-1] = border[:, 1], border[:, 2]
     sections = [Section(s.x, s.points) for s in stations]
-    return fit_patch(sections, station_map, knots_c, fixed_y, fixed_z, **FIT, least_half_breadth=least, edge=border)
+    lowest = min(float(np.min(border[:, 2])), *(float(np.min(s.points[:, 1])) for s in stations))
+    return fit_patch(sections, station_map, knots_c, fixed_y, fixed_z, **FIT, least_half_breadth=least, edge=border,
+                     heights=(lowest - HEIGHT_ROOM * draft, draft))  # fmt: skip
 
 
 def _fit_skeg(stations: Sequence[_Station], knots: Array, edge: Array, end: float, least: float) -> PatchFit:
@@ -356,7 +424,7 @@ def _fit_skeg(stations: Sequence[_Station], knots: Array, edge: Array, end: floa
 
 
 def _fit_bulb(
-    table: HalfBreadths, rest: Sequence[_Station], knots: Array, edge: Array, part: float, least: float
+    table: HalfBreadths, rest: Sequence[_Station], draft: float, knots: Array, edge: Array, part: float, least: float
 ) -> tuple[PatchFit, bool]:
     """The patch of the submerged stations at the bow; true where it ends flat instead of in a point."""
     knots_b, border = edge_segment(knots, edge, 0.0, part, np.array([]))
@@ -373,7 +441,10 @@ def _fit_bulb(
     if pointed:
         fixed_y[-1], fixed_z[-1] = 0.0, near.points[int(np.argmax(near.points[:, 0])), 1]
     sections = [Section(s.x, s.points) for s in rest]
-    fit = fit_patch(sections, station_map, knots_b, fixed_y, fixed_z, **FIT, least_half_breadth=least, edge=border)
+    lowest, highest = (find(float(find(s.points[:, 1])) for s in rest) for find in (min, max))
+    room = HEIGHT_ROOM * draft
+    fit = fit_patch(sections, station_map, knots_b, fixed_y, fixed_z, **FIT, least_half_breadth=least, edge=border,
+                    heights=(lowest - room, min(highest + room, draft)))  # fmt: skip
     return fit, not pointed
 
 
@@ -402,8 +473,12 @@ def fit_topsides(
         fixed_y[:] = edge[:, None]
     low, high = float(main.control_points[0, 0, 0]), float(main.control_points[-1, 0, 0])
     sections = []
-    for x, row in zip(table.x, table.y, strict=True):
-        if low < x < high:
+    # A patch shorter than the spacing has only the stations at its ends.
+    inside = (table.x > low) & (table.x < high)
+    if not np.any(inside):
+        inside = np.abs(table.x - high) < 1e-9 * (table.x[-1] - table.x[0])
+    for x, row, taken in zip(table.x, table.y, inside, strict=True):
+        if taken:
             at = float(main.evaluate(station_map.u(np.array([x])), np.array([1.0]))[0, 0, 1])
             widths = np.interp(above, table.z, row) if not walls else np.array([at])
             heights = above if not walls else np.array([height])

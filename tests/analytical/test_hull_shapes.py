@@ -1,4 +1,4 @@
-"""Users' hulls of simple shapes with closed-form volumes: box, ellipsoid, wedge with an immersed transom."""
+"""Users' hulls of simple shapes with closed-form volumes: box, ellipsoid, wedge with an immersed transom, cruiser stern."""
 
 from __future__ import annotations
 
@@ -70,6 +70,36 @@ def test_immersed_transom_gives_the_centre_up(tmp_path: Path) -> None:
     same = parent.transform(LENGTH, parent.breadth, 2.83, own)
     assert same.hydrostatics.displaced_volume == pytest.approx(own, rel=1e-9)
     assert not same.warnings
+
+
+def test_cruiser_stern_above_a_post(tmp_path: Path) -> None:
+    """Series-60-like: a vertical stern post at AP up to three quarters of the draft, a counter out to x = -2 m above.
+
+    One patch through both would swing metres above the water between the stations; the post has to be an edge.
+    """
+    def half_breadth(x: float, z: float) -> float:
+        aft = -2.0 * max(0.0, z - 3.0)  # the profile leaves the post at z = 3 m and passes the draft, 4 m, at x = -2 m
+        part = (x - 30.0) / (30.0 if x >= 30.0 else 30.0 - aft)
+        section = 1.0 - (1.0 - min(z / 4.0, 1.0)) ** 3
+        return 6.0 * max(0.0, 1.0 - part**2) * section
+
+    stations = np.concatenate([[-4.0, 0.0, 0.75, 1.5], np.linspace(3.0, 57.0, 19), [58.5, 60.0]])
+    parent = fitted(tmp_path, stations, np.linspace(0.0, 5.5, 16), half_breadth, 4.0)
+    assert set(parent.underwater) == {"main", "counter"}
+    assert parent.extent("main")[0] == 0.0
+    assert parent.extent("counter")[0] == pytest.approx(-2.0, abs=0.1)
+    for surface in parent.underwater.values():
+        heights = surface.evaluate(np.linspace(0.0, 1.0, 201), np.linspace(0.0, 1.0, 41))[..., 2]
+        # Nothing above the waterline; 2 % of the draft for the rounding of the keel's ends.
+        assert float(heights.max()) <= 4.0 + 1e-9 and float(heights.min()) > -0.08
+    x, z = np.linspace(-2.0, 60.0, 2001), np.linspace(0.0, 4.0, 801)
+    table = np.array([[half_breadth(a, b) for b in z] for a in x])
+    exact = 2.0 * float(np.trapezoid(np.trapezoid(table, z, axis=1), x))
+    # A table of 25 x 16 readings with a blunt keel: the parabola between two stations 3 m apart is 0.25 % of the whole.
+    assert parent.hydrostatics.displaced_volume == pytest.approx(exact, rel=1e-2)
+    hull = parent.transform(LENGTH, parent.breadth, 4.0, 1.04 * parent.hydrostatics.displaced_volume)
+    assert not hull.clipped
+    assert hull_mesh(hull, "view").is_volume and underwater_mesh(hull, "view").is_volume
 
 
 def test_draft_between_waterlines(tmp_path: Path) -> None:
