@@ -77,6 +77,14 @@ def _grid_checks() -> Iterator[Check]:
             )
             yield relative_check(
                 GROUP,
+                f"{label}: 10KQ on 24 x 10 panels",
+                10.0 * float(coarse.torque_coefficient[i]),
+                10.0 * float(kq[i]),
+                OWN,
+                0.01,
+            )
+            yield relative_check(
+                GROUP,
                 f"{label}: KT by pressures, 80 x 24",
                 float(fine.open_water.thrust_coefficient[i]),
                 float(kt[i]),
@@ -123,7 +131,7 @@ def _experiment_checks() -> Iterator[Check]:
 
 def _level_checks() -> Iterator[Check]:
     drag = SectionDrag.full_scale()
-    for blades, pitch in ((3, 0.95), (3, 1.05), (5, 1.0), (7, 0.95), (7, 1.05)):
+    for blades, pitch in ((3, 0.95), (3, 1.05), (4, 1.0), (5, 1.0), (6, 1.0), (7, 0.95), (7, 1.05)):
         propeller = propeller_family(load_propeller(), 9.0, blades, pitch)
         advance = np.array([0.7])
         panels = float(solve(propeller, advance, drag).open_water.thrust_coefficient[0])
