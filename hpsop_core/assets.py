@@ -6,6 +6,9 @@ from importlib.resources import files
 from importlib.resources.abc import Traversable
 
 ASSET_PACKAGE = "hpsop_assets"
+SHIPPED_HULLS = ("dtc",)
+# With the number of blades that each table was drawn for.
+SHIPPED_PROPELLERS = {"p4119": 3}
 
 
 def asset_path(*parts: str) -> Traversable:

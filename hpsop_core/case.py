@@ -171,8 +171,9 @@ def _assembled(
         sections = {
             name: read_section(section, tables.get(name, {}), name) for name, section in SECTIONS.items()
         }
-        sections["hull"] = _absolute(sections["hull"], ("offsets", "stl"), folder)
-        sections["propeller"] = _absolute(sections["propeller"], ("geometry",), folder)
+        if folder is not None:
+            sections["hull"] = _absolute(sections["hull"], "hull", ("offsets", "stl"), folder)
+            sections["propeller"] = _absolute(sections["propeller"], "propeller", ("geometry",), folder)
         bounds = dict(tables["bounds"])
         # The three variables that the paper does not have are fixed at the initial design's unless stated.
         initial = sections["initial"]
@@ -189,8 +190,14 @@ def _assembled(
         raise InputError(f"{where}: {error}") from error
 
 
-def _absolute(section: Any, names: tuple[str, ...], folder: Path | None) -> Any:
-    if folder is None:
-        return section
+def _absolute(section: Any, where: str, names: tuple[str, ...], folder: Path) -> Any:
+    """The section with absolute paths to the files that it names.
+
+    Raises:
+        InputError: there is no such file.
+    """
     changes = {name: str((folder / getattr(section, name)).resolve()) for name in names if getattr(section, name)}
+    for name, path in changes.items():
+        if not Path(path).is_file():
+            raise InputError(f"{where}: {name}: there is no file {path}; give a path from the case file's folder")
     return dataclasses.replace(section, **changes)

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from dataclasses import dataclass
 
+from hpsop_core.assets import SHIPPED_HULLS, SHIPPED_PROPELLERS
 from hpsop_core.case_fields import choice, flag, integer, number, numbers, optional_number, text
 from hpsop_core.design import DesignVariables
 from hpsop_core.errors import InputError
@@ -16,10 +17,12 @@ OBJECTIVES = ("resistance", "efficiency", "delivered_power", "displacement", "ca
 class HullSection:
     """Which parent hull, and how a design is made from it."""
 
-    parent: str = text("dtc", "a shipped hull's name; leave it when offsets or stl names a file")
+    parent: str = choice("dtc", SHIPPED_HULLS, "a shipped hull's name; leave it when offsets or stl names a file")
     offsets: str = text("", "an offsets table (station_x_m,waterline_z_m,half_breadth_m) instead of a shipped hull")
     stl: str = text("", "a closed STL of the hull instead of a shipped hull")
-    stl_unit: str = choice("m", ("m", "mm", "cm", "ft", "in"), "the STL's unit of length")
+    stl_unit: str = choice(
+        "unstated", ("unstated", "m", "mm", "cm", "ft", "in"), "the STL's unit of length; to be stated with stl"
+    )
     length: float | None = optional_number(0.1, 600.0, "Lpp of the offsets or STL", "m")
     draft: float | None = optional_number(0.005, 40.0, "waterline of the offsets or STL above z = 0", "m")
     form: str = choice(
@@ -33,13 +36,17 @@ class HullSection:
             raise InputError("hull: both offsets and stl are given; keep one of them")
         if (self.offsets or self.stl) and (self.length is None or self.draft is None):
             raise InputError("hull: a hull from a file needs length (Lpp) and draft, in metres")
+        if self.stl and self.stl_unit == "unstated":
+            raise InputError('hull: an STL carries no unit; add stl_unit = "m" (or mm, cm, ft, in)')
 
 
 @dataclass(frozen=True)
 class PropellerSection:
     """Which parent propeller."""
 
-    parent: str = text("p4119", "a shipped propeller's name; leave it when geometry names a file")
+    parent: str = choice(
+        "p4119", tuple(SHIPPED_PROPELLERS), "a shipped propeller's name; leave it when geometry names a file"
+    )
     geometry: str = text("", "a radial table (r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c) instead of a shipped propeller")
     geometry_blade_count: int = integer(3, 2, 7, "blades that the radial table was designed for")
 

@@ -3,14 +3,14 @@
 from __future__ import annotations
 
 import json
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping
 from dataclasses import dataclass, field
 from functools import cached_property, lru_cache
 from typing import Any
 
 import numpy as np
 
-from hpsop_core.assets import read_asset_text
+from hpsop_core.assets import SHIPPED_HULLS, read_asset_text
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.form import LEAST_STRETCH, FormSolver, LongitudinalShift, ShiftFrame
 from hpsop_core.geometry.hydrostatics import (
@@ -103,6 +103,7 @@ class ParentHull:
         along: patch -> other patch with the same u (a topsides patch and the patch below it).
         source: where the shape comes from.
         fit_report: how well the surface meets the points of a user's own hull.
+        warnings: what every hull of this family has to say, one line each.
     """
 
     name: str
@@ -120,6 +121,7 @@ class ParentHull:
     along: Mapping[str, str] = field(default_factory=dict)
     source: str = ""
     fit_report: FitReport | None = None
+    warnings: tuple[str, ...] = ()
     _points: dict[tuple[str, bytes, bytes], Array] = field(default_factory=dict, repr=False)
 
     def surface(self, name: str) -> NurbsSurface:
@@ -264,7 +266,7 @@ class ParentHull:
                 f"this hull cannot hold its centre of buoyancy while its volume changes: it lies {moved:+.3g} m "
                 "from the asked place",
             )
-        return Hull(self, length, breadth, draft, shift, measured, clipped, warnings)
+        return Hull(self, length, breadth, draft, shift, measured, clipped, (*warnings, *self.warnings))
 
 
 @dataclass(frozen=True, eq=False)
@@ -468,11 +470,6 @@ def parent_hull_from_dict(data: dict[str, Any]) -> ParentHull:
         raise InputError(f"hull file: unreadable ({problem!r})") from problem
 
 
-def shipped_hulls() -> Sequence[str]:
-    """Names that `load_parent_hull` knows."""
-    return ("dtc",)
-
-
 @lru_cache(maxsize=8)
 def load_parent_hull(name: str = "dtc") -> ParentHull:
     """A shipped parent hull.
@@ -480,6 +477,6 @@ def load_parent_hull(name: str = "dtc") -> ParentHull:
     Raises:
         InputError: no hull of that name is shipped.
     """
-    if name not in shipped_hulls():
-        raise InputError(f"hull '{name}' is not shipped; available: {', '.join(shipped_hulls())}")
+    if name not in SHIPPED_HULLS:
+        raise InputError(f"hull '{name}' is not shipped; available: {', '.join(SHIPPED_HULLS)}")
     return parent_hull_from_dict(json.loads(read_asset_text("hulls", f"{name}.json")))

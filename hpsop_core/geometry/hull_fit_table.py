@@ -28,6 +28,7 @@ from hpsop_core.geometry.hull_fit import (
     knots_at,
     tidy_section,
 )
+from hpsop_core.geometry.hydrostatics import sectional_areas
 from hpsop_core.geometry.nurbs import NurbsSurface
 from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array
@@ -537,7 +538,9 @@ def parent_from_table(table: HalfBreadths, length: float, draft: float) -> Paren
     underwater = {name: fit.surface for name, fit in fits.items()}
     shaft = SHAFT_HEIGHT_TO_DRAFT * draft
     boss = _boss(fits, shaft) if "skeg" not in fits else float(fits["skeg"].surface.control_points[0, 0, 0])
-    breadth = 2.0 * float(np.max(table.y[:, table.z <= draft * (1.0 + 1e-9)]))
+    # At the draft itself too, which may lie between two waterlines of the table.
+    found = [_station(float(x), table.z, row, draft) for x, row in zip(table.x, table.y, strict=True)]
+    breadth = 2.0 * max(float(np.max(station.points[:, 0])) for station in found if station is not None)
     first = min(float(fit.surface.control_points[0, 0, 0]) for fit in fits.values())
     last = float(main.control_points[-1, 0, 0])
     body = last - first
@@ -558,7 +561,23 @@ def parent_from_table(table: HalfBreadths, length: float, draft: float) -> Paren
         float(np.sum(quadrature.area * quadrature.width)),
     )
     frame = ShiftFrame(aft, middle, forward, length)
-    return replace(rough, shift_frame=frame, fit_report=report, _points={})
+    return replace(rough, shift_frame=frame, fit_report=report, warnings=_flat_ends(rough), _points={})
+
+
+def _flat_ends(parent: ParentHull) -> tuple[str, ...]:
+    """A line for every flat end in the water that is no boss: what level 1 cannot see there."""
+    lines = []
+    for name, end in parent.caps:
+        if name in parent.topsides or name == "skeg":
+            continue
+        u = np.array([0.0 if end == "first" else 1.0])
+        area = float(sectional_areas(parent.surface(name), u)[0])
+        x = parent.extent(name)[0 if end == "first" else 1]
+        lines.append(
+            f"{parent.name} ends in a flat face of {area:.3g} m2 in the water at x = {x:.4g} m: thin-ship theory "
+            "(level 1) takes no waves from it, and it is no part of the wetted surface"
+        )
+    return tuple(lines)
 
 
 def _table_volume(table: HalfBreadths, draft: float) -> float:

@@ -18,6 +18,8 @@ UNITS = {"m": 1.0, "mm": 0.001, "cm": 0.01, "ft": 0.3048, "in": 0.0254}
 FEWEST_STATIONS, FEWEST_WATERLINES = 7, 5
 # Largest distance of a point from the fitted surface, as a part of the breadth; sound tables stay below 0.5 %.
 LARGEST_DEVIATION = 0.015
+# How far the surface may pass the table's heights and breadths between the points, as a part of the draft.
+LARGEST_SWING = 0.03
 STL_STATIONS, STL_WATERLINES, STL_ABOVE = 121, 33, 8
 
 
@@ -179,7 +181,30 @@ def parent_hull_from_offsets(path: Path | str, length: float, draft: float) -> P
     _check_size(path.name, x, z, y, length, draft, begins)
     parent = parent_from_table(HalfBreadths(path.name, x, z, y), length, draft)
     _check_fit(parent, path.name, x, z, begins)
+    _check_between(parent, path.name, x, z, begins)
     return parent
+
+
+def _check_between(parent: ParentHull, name: str, x: Array, z: Array, begins: dict[float, int]) -> None:
+    """Between the points, where no reading speaks, the surface must stay within the table's heights and breadths."""
+    grid = np.linspace(0.0, 1.0, 101)
+    room = LARGEST_SWING * parent.draft
+    half = 0.5 * parent.breadth
+    for patch, surface in parent.underwater.items():
+        points = surface.evaluate(grid, grid)
+        for beyond, what in (
+            (float(z[0]) - points[..., 2], "below the lowest waterline"),
+            (points[..., 2] - parent.draft, "above the draft"),
+            (points[..., 1] - half, "outside the greatest half-breadth"),
+        ):
+            if float(beyond.max()) > room:
+                place = points[np.unravel_index(int(np.argmax(beyond)), beyond.shape)]
+                station = float(x[np.argmin(np.abs(x - place[0]))])
+                row = f" row {begins[station]}" if station in begins else ""
+                raise InputError(
+                    f"{name}{row}: near station {station:g} m the smooth surface ({patch}) swings "
+                    f"{float(beyond.max()):.3g} m {what} between the points; add stations there"
+                )
 
 
 def _check_fit(parent: ParentHull, name: str, x: Array, z: Array, begins: dict[float, int]) -> None:
@@ -238,7 +263,9 @@ def parent_hull_from_stl(path: Path | str, unit: str, draft: float, length: floa
     triangles = np.asarray(mesh.triangles, dtype=np.float64)
     y = np.array([_half_breadths(triangles, float(station), z, draft, path.name) for station in x])
     _check_size(path.name, x, z, y, length, draft, {})
-    return parent_from_table(HalfBreadths(path.name, x, z, y), length, draft)
+    parent = parent_from_table(HalfBreadths(path.name, x, z, y), length, draft)
+    _check_between(parent, path.name, x, z, {})
+    return parent
 
 
 def _slice_axes(low: Array, high: Array, draft: float) -> tuple[Array, Array]:

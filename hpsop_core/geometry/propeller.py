@@ -8,7 +8,7 @@ from functools import lru_cache
 
 import numpy as np
 
-from hpsop_core.assets import asset_path
+from hpsop_core.assets import SHIPPED_PROPELLERS, asset_path
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.propeller_input import radial_table_from_csv, radial_table_from_text
 from hpsop_core.geometry.radial_table import BladeSections, RadialTable
@@ -69,12 +69,11 @@ def load_propeller(name: str = "p4119") -> RadialTable:
     Raises:
         InputError: there is no such shipped propeller.
     """
-    shipped = {"p4119": 3}
-    if name not in shipped:
-        choice = ", ".join(sorted(shipped))
+    if name not in SHIPPED_PROPELLERS:
+        choice = ", ".join(sorted(SHIPPED_PROPELLERS))
         raise InputError(f"propeller '{name}' is not shipped; choose one of {choice} or give a CSV file")
     text = asset_path("propellers", f"{name}.csv").read_text(encoding="utf-8")
-    return radial_table_from_text(text, f"{name}.csv", name, shipped[name])
+    return radial_table_from_text(text, f"{name}.csv", name, SHIPPED_PROPELLERS[name])
 
 
 def propeller_family(

@@ -10,6 +10,7 @@ from hpsop_core.assets import read_asset_text
 from hpsop_core.cli import main
 
 PAPER = read_asset_text("cases", "dtc-p4119-paper.toml")
+HULL, BLADE = 'parent = "dtc"', 'parent = "p4119"'
 
 # (what is replaced in the shipped case, by what, words that the message must hold)
 BAD_CASES = {
@@ -26,9 +27,14 @@ BAD_CASES = {
     "same objective twice": ('second = "efficiency"', 'second = "resistance"', ("objectives", "different")),
     "not TOML": ("[hull]", "[hull", ("TOML", "line")),
     "missing table": ("[initial]", "[conditions.x]", ("missing",)),
-    "missing file": ('parent = "dtc"', 'offsets = "nowhere.csv"\nlength = 3.0\ndraft = 0.2', ("nowhere.csv",)),
-    "unknown hull": ('parent = "dtc"', 'parent = "kcs"', ("kcs", "dtc")),
-    "unknown propeller": ('parent = "p4119"', 'parent = "p9999"', ("p9999", "p4119")),
+    "missing file": (HULL, 'offsets = "nowhere.csv"\nlength = 3.0\ndraft = 0.2', ("hull", "offsets", "nowhere.csv")),
+    "missing propeller file": (BLADE, 'geometry = "nowhere.csv"', ("propeller", "geometry", "nowhere.csv")),
+    "missing mesh": (HULL, 'stl = "nowhere.stl"\nstl_unit = "m"\nlength = 3.0\ndraft = 0.2', ("nowhere.stl",)),
+    "mesh without a unit": (HULL, 'stl = "ship.stl"\nlength = 3.0\ndraft = 0.2', ("hull", "stl_unit")),
+    "mesh without a draft": (HULL, 'stl = "ship.stl"\nstl_unit = "m"\nlength = 3.0', ("hull", "draft")),
+    "table and mesh": (HULL, 'stl = "ship.stl"\noffsets = "a.csv"', ("hull", "both", "keep one")),
+    "unknown hull": (HULL, 'parent = "kcs"', ("kcs", "dtc")),
+    "unknown propeller": (BLADE, 'parent = "p9999"', ("p9999", "p4119")),
 }
 
 
@@ -50,8 +56,7 @@ def test_bad_case_file(name: str, tmp_path: Path, capsys: pytest.CaptureFixture[
     message = one_line(capsys)
     for word in words:
         assert word in message, message
-    if name not in ("missing file", "unknown hull", "unknown propeller"):
-        assert "my.toml" in message
+    assert "my.toml" in message
 
 
 @pytest.mark.parametrize(

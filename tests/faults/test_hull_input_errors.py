@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable
+from dataclasses import replace
 from pathlib import Path
 
 import numpy as np
@@ -11,7 +12,7 @@ import trimesh
 
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.geometry.hull_input import parent_hull_from_offsets, parent_hull_from_stl
+from hpsop_core.geometry.hull_input import _check_between, parent_hull_from_offsets, parent_hull_from_stl
 
 LENGTH, DRAFT = 100.0, 6.25
 
@@ -106,6 +107,22 @@ def test_bad_dimensions(tmp_path: Path, length: float, draft: float, message: st
     path.write_text("\n".join(good_lines()) + "\n")
     with pytest.raises(InputError, match=message):
         parent_hull_from_offsets(path, length, draft)
+
+
+def test_a_surface_that_swings_between_the_points_is_refused(tmp_path: Path) -> None:
+    """Between stations no reading speaks; the surface of a sound table is held against a table that ends higher."""
+    path = tmp_path / "hull.csv"
+    path.write_text("\n".join(good_lines()) + "\n")
+    parent = parent_hull_from_offsets(path, LENGTH, DRAFT)
+    x, z = np.linspace(0.0, LENGTH, 11), np.linspace(0.0, 8.0, 9)
+    rows = {float(station): 2 + 9 * k for k, station in enumerate(x)}
+    _check_between(parent, "hull.csv", x, z, rows)
+    with pytest.raises(InputError, match=r"row \d+: near station .* below the lowest waterline .* add stations"):
+        _check_between(parent, "hull.csv", x, z + 1.0, rows)
+    with pytest.raises(InputError, match="above the draft"):
+        _check_between(replace(parent, draft=0.9 * DRAFT), "hull.csv", x, z, {})
+    with pytest.raises(InputError, match="outside the greatest half-breadth"):
+        _check_between(replace(parent, breadth=0.9 * parent.breadth), "hull.csv", x, z, {})
 
 
 def test_missing_and_binary_files(tmp_path: Path) -> None:
