@@ -8,7 +8,7 @@ from dataclasses import dataclass, field
 import numpy as np
 from numpy.typing import NDArray
 
-from explorer.charts.plot import Plot, legend, padded
+from explorer.charts.plot import Plot, legend, padded, smooth
 from hpsop_core.evaluation_result import Evaluation
 
 Array = NDArray[np.float64]
@@ -76,61 +76,60 @@ def open_water_chart(designs: Sequence[tuple[Series, Evaluation]], width: float,
         (0.0, longest),
         (0.0, min(top, 1.4)),
         "advance coefficient J [–]",
-        "KT, 10KQ, η₀ [–]",
+        "K_T, 10K_Q, η₀ [–]",
         margins=(48, 12, 8, 34),
     )
     if not curves:
         plot.message("no open-water curves for this design")
     for index, (series, curve, evaluation) in enumerate(curves):
-        j = np.asarray(curve.advance_coefficient)
-        kt, kq = np.asarray(curve.thrust_coefficient), 10.0 * np.asarray(curve.torque_coefficient)
-        eta = np.asarray(curve.open_water_efficiency)
-        eta = np.where(kt > 0.0, eta, np.nan)
+        computed = np.asarray(curve.advance_coefficient)
+        j, kt = smooth(computed, curve.thrust_coefficient)
+        kq = 10.0 * smooth(computed, curve.torque_coefficient)[1]
+        with np.errstate(divide="ignore", invalid="ignore"):
+            # from the smooth KT and KQ, so that the curve keeps its shape where it falls to nothing
+            eta = np.where((kt > 0.0) & (kq > 0.0), 10.0 * j * kt / (2.0 * np.pi * kq), np.nan)
         css = f"{series.css} {series.dash}"
         for values, word in ((kt, "KT"), (kq, "10KQ"), (eta, "η₀")):
-            plot.line(j, values, css, title=f"{word}, {series.name}")
+            plot.line(j, np.where(values >= 0.0, values, np.nan), css, title=f"{word}, {series.name}")
         main = index == len(curves) - 1
         if main:
-            at = max(int(len(j) * 0.14), 0)
-            plot.text(j[at], kt[at], "KT", dy=12)
-            plot.text(j[at], kq[at], "10KQ", dy=-6)
-            finite = np.flatnonzero(np.isfinite(eta))
-            if finite.size:
-                best = finite[len(finite) // 3]
-                plot.text(j[best], eta[best], "η₀", dx=-6, dy=-6, anchor="end")
+            for values, word in ((kt, "K_T"), (kq, "10K_Q"), (eta, "η₀")):
+                plot.text(j[0], values[0], word, anchor="end", dx=-5, dy=4)
         for number, condition in enumerate(evaluation.conditions):
             if not condition.advance_coefficient > 0.0:
                 continue
             needed = condition.thrust_coefficient / condition.advance_coefficient**2 * j**2
-            # The parabola matters near its intersection; further up it only crosses other curves.
             needed = np.where(needed <= plot.y_limits[1], needed, np.nan)
             if main or series.name == "initial":
                 plot.line(j, needed, f"required {series.css}", title=f"required KT, condition {number + 1}")
+            at, label = condition.advance_coefficient, f"J{_SUBSCRIPTS[number]} {condition.advance_coefficient:.4f}"
             plot.mark(
-                condition.advance_coefficient,
+                at,
                 condition.thrust_coefficient,
                 "circle",
                 3.6,
                 _solid(series.css),
-                title=f"{series.name}: J{_SUBSCRIPTS[number]} "
-                f"{condition.advance_coefficient:.4f}, KT {condition.thrust_coefficient:.4f}",
+                title=f"{series.name}: {label}, KT {condition.thrust_coefficient:.4f}",
             )
             plot.mark(
-                condition.advance_coefficient,
+                at,
                 condition.open_water_efficiency,
                 "circle",
-                2.8,
+                3.0,
                 _solid(series.css),
-                title=f"η₀ {condition.open_water_efficiency:.4f}",
+                title=f"{series.name}: {label}, η₀ {condition.open_water_efficiency:.4f}",
             )
             if main:
-                plot.text(condition.advance_coefficient, 0.0, f"J{_SUBSCRIPTS[number]}", "soft", "middle", dy=-4)
+                others = [item.advance_coefficient for item in evaluation.conditions if item is not condition]
+                # two conditions may nearly coincide: their names then stand on either side
+                right = all(at >= other for other in others)
+                plot.text(at, 0.0, f"J_{number + 1}", "soft", "start" if right else "end", dx=3 if right else -3, dy=-5)
                 plot.raw(
-                    f'<path d="M{float(plot.px(condition.advance_coefficient)):.1f} '
-                    f'{float(plot.py(condition.thrust_coefficient)):.1f}V{plot.height - 50:.1f}" class="guide"/>'
+                    f'<path d="M{float(plot.px(at)):.1f} {float(plot.py(condition.open_water_efficiency)):.1f}'
+                    f'V{float(plot.py(0.0)):.1f}" class="guide"/>'
                 )
     keys = [("line", f"{series.css} {series.dash}", series.name) for series, _, _ in curves]
-    keys.append(("dash", "required soft", "required KT"))
+    keys.append(("dash", "required soft", "required K_T, a condition each"))
     return plot.svg("open_water") + legend(keys)
 
 
@@ -142,7 +141,7 @@ def resistance_chart(
     designs: Sequence[tuple[Series, Evaluation, DesignCurves]], which: str, width: float, height: float
 ) -> str:
     """Wave ("wave") or total ("total") resistance against Froude number (the paper's figures 6 and 7)."""
-    word = "wave resistance Rw [MN]" if which == "wave" else "total resistance Rt [MN]"
+    word = "wave resistance R_W [MN]" if which == "wave" else "total resistance R_T [MN]"
 
     def values(curves: DesignCurves) -> Array:
         return 1e-6 * (curves.wave_resistance if which == "wave" else curves.total_resistance)
@@ -155,7 +154,7 @@ def resistance_chart(
     if not designs:
         plot.message("computing …")
     for series, evaluation, curves in designs:
-        plot.line(curves.froude_number, values(curves), f"{series.css} {series.dash}", title=series.name)
+        plot.line(*smooth(curves.froude_number, values(curves)), f"{series.css} {series.dash}", title=series.name)
         for number, condition in enumerate(evaluation.conditions):
             force = condition.wave_resistance if which == "wave" else condition.total_resistance
             plot.mark(
@@ -166,29 +165,30 @@ def resistance_chart(
                 _solid(series.css),
                 title=f"{series.name}, condition {number + 1}: {1e-3 * force:,.0f} kN",
             )
-    return plot.svg(f"resistance_{which}")
+    keys = [("line", f"{series.css} {series.dash}", series.name) for series, _, _ in designs]
+    return plot.svg(f"resistance_{which}") + legend(keys)
 
 
 def thrust_chart(designs: Sequence[tuple[Series, Evaluation, DesignCurves]], width: float, height: float) -> str:
     """Thrust required by the hull, and given by the propeller at each condition's rate, against Fn (figure 9)."""
     x = [curves.froude_number for _, _, curves in designs]
-    top = [1e-6 * curves.thrust_required.max() for _, _, curves in designs]
+    # high enough for the operating points with air above; the steep ends of the curves may leave the chart
+    top = [1.75e-6 * condition.thrust for _, evaluation, _ in designs for condition in evaluation.conditions]
     x_limits = padded(np.concatenate(x), 0.0) if x else (0.16, 0.3)
     plot = Plot(
         width,
         height,
         x_limits,
-        (0.0, 1.25 * max(top, default=1.0)),
+        (0.0, max(top, default=1.0)),
         "Froude number Fn [–]",
         "thrust T [MN]",
         margins=(48, 12, 8, 34),
     )
     if not designs:
         plot.message("computing …")
-    for series, evaluation, curves in designs:
+    for index, (series, evaluation, curves) in enumerate(designs):
         plot.line(
-            curves.froude_number,
-            1e-6 * curves.thrust_required,
+            *smooth(curves.froude_number, 1e-6 * curves.thrust_required),
             f"{series.css} {series.dash}",
             title=f"required, {series.name}",
         )
@@ -196,8 +196,7 @@ def thrust_chart(designs: Sequence[tuple[Series, Evaluation, DesignCurves]], wid
             zip(evaluation.conditions, curves.thrust_available, strict=False)
         ):
             plot.line(
-                curves.froude_number,
-                1e-6 * available,
+                *smooth(curves.froude_number, 1e-6 * available),
                 f"{series.css} dot thin",
                 title=f"available at {condition.rotation_rate_rpm:.1f} rpm, {series.name}",
             )
@@ -210,18 +209,21 @@ def thrust_chart(designs: Sequence[tuple[Series, Evaluation, DesignCurves]], wid
                 title=f"{series.name}, condition {number + 1}: T {1e-3 * condition.thrust:,.0f} kN at "
                 f"{condition.rotation_rate_rpm:.1f} rpm",
             )
-        if series.css == "selected":
-            for condition in evaluation.conditions:
-                plot.text(
-                    condition.froude_number,
-                    1e-6 * condition.thrust,
-                    f"{condition.rotation_rate_rpm:.1f} rpm",
-                    anchor="start",
-                    dx=7,
-                    dy=4,
-                )
+        if index == len(designs) - 1:
+            for number, (condition, available) in enumerate(
+                zip(evaluation.conditions, curves.thrust_available, strict=False)
+            ):
+                finite = np.flatnonzero(np.isfinite(available))
+                if finite.size:
+                    plot.text(
+                        float(curves.froude_number[finite[0]]),
+                        1e-6 * float(available[finite[0]]),
+                        f"n_{number + 1} = {condition.rotation_rate_rpm:.1f} rpm",
+                        dx=5,
+                        dy=-5,
+                    )
     keys = [("line", f"{series.css} {series.dash}", f"required, {series.name}") for series, _, _ in designs]
-    keys.append(("line", "soft dot thin", "available at the condition's rate of rotation"))
+    keys.append(("line", "soft dot thin", "available at each condition's n"))
     return plot.svg("thrust") + legend(keys)
 
 
@@ -278,7 +280,7 @@ def sectional_area_chart(designs: Sequence[tuple[Series, HullLines]], width: flo
         height,
         (-0.06, 1.06),
         (0.0, 1.08 * top),
-        "x / Lpp [–] (0: AP, 1: FP)",
+        "x / L_PP [–] (0: AP, 1: FP)",
         "sectional area [m²]",
         margins=(54, 14, 8, 34),
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from explorer.charts.plot import escape
+from explorer.charts.plot import escape, symbol_html
 from explorer.quantities import OBJECTIVES, VARIABLES, all_quantities
 from explorer.run_picture import RunPicture
 
@@ -43,7 +43,7 @@ def drivers_table(picture: RunPicture) -> str:
     everything = {quantity.key: quantity for quantity in all_quantities(picture.case.conditions.froude_numbers)}
     results = [*OBJECTIVES, *(everything[key] for key in _RESULTS if key in everything)]
     free = [quantity for index, quantity in enumerate(VARIABLES) if index in set(picture.case.bounds.free)]
-    heads = "".join(f'<th title="{escape(item.label)}">{escape(item.symbol)}</th>' for item in results)
+    heads = "".join(f'<th title="{escape(item.label)}">{symbol_html(item.symbol)}</th>' for item in results)
     rows = [f"<tr><th>variable</th>{heads}</tr>"]
     for variable in free:
         first = picture.column(variable.key)
@@ -61,7 +61,7 @@ def drivers_table(picture: RunPicture) -> str:
                 f"{'+' if rho > 0 else '−'}{abs(rho):.2f}</td>"
             )
         rows.append(
-            f'<tr><td class="name">{escape(variable.label)} <span class="unit">{escape(variable.symbol)}</span>'
+            f'<tr><td class="name">{escape(variable.label)} <span class="unit">{symbol_html(variable.symbol)}</span>'
             f"</td>{''.join(cells)}</tr>"
         )
     return (

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from explorer.charts.plot import escape
+from explorer.charts.plot import escape, symbol_svg
 from explorer.quantities import OBJECTIVES, VARIABLES, Quantity, all_quantities, number_text
 from explorer.run_picture import RunPicture
 
@@ -24,6 +24,11 @@ def axes_of(picture: RunPicture) -> list[Quantity]:
     return [*chosen, *OBJECTIVES]
 
 
+def _axis_title(quantity: Quantity) -> str:
+    # a dozen axes side by side have no room for the unit of a number that has none
+    return quantity.title() if quantity.unit else quantity.symbol
+
+
 def parallel_chart(
     picture: RunPicture,
     filters: Mapping[str, tuple[float, float]],
@@ -34,7 +39,7 @@ def parallel_chart(
 ) -> str:
     """The chart as SVG: the archive thin, the front thick, what a brush keeps out faded."""
     axes = [(quantity, picture.column(quantity.key)) for quantity in axes_of(picture)]
-    left, right, top, bottom = 26.0, 26.0, 40.0, 34.0
+    left, right, top, bottom = 26.0, 26.0, 46.0, 20.0
     count = len(axes)
     gap = (width - left - right) / max(count - 1, 1)
     plot_height = height - top - bottom
@@ -69,11 +74,11 @@ def parallel_chart(
     for index, (quantity, _) in enumerate(axes):
         x = left + index * gap
         low, high = limits[index]
-        title_y = 12 if index % 2 == 0 else 24
+        title_y = 11 if index % 2 == 0 else 25
         parts.append(f'<path d="M{x:.1f} {top:.1f}V{top + plot_height:.1f}" class="axis"/>')
         parts.append(
             f'<text x="{x:.1f}" y="{title_y}" text-anchor="middle" class="axis-title">'
-            f"<title>{escape(quantity.label)}</title>{escape(quantity.title())}</text>"
+            f"<title>{escape(quantity.label)}</title>{symbol_svg(_axis_title(quantity))}</text>"
         )
         parts.append(
             f'<text x="{x:.1f}" y="{top - 4:.1f}" text-anchor="middle" class="note">'

@@ -144,6 +144,8 @@ def pareto_chart(
                 plot.mark(f[row, 0], f[row, 1], "circle", 4.2, css, fade)
             else:
                 plot.mark(f[row, 0], f[row, 1], "circle", 3.0, css, fade or "opacity:.55")
+    if fronts:
+        _count_coincident(plot, f[picture.rows(fronts[-1].front)])
     for row in np.flatnonzero(picture.by_hand & ~picture.failed):
         plot.mark(f[row, 0], f[row, 1], "square", 4.0, "hand", title=f"made by hand: design {picture.ids[row]}")
     if options.generation is None:
@@ -159,6 +161,18 @@ def pareto_chart(
     if not len(picture.ids) and len(marks) <= 2:
         plot.message("No designs yet.\nPress Start: each generation's front appears here.")
     return plot.svg("pareto", 'data-drag="pan" data-hover="1" data-click="1" data-box="1" tabindex="0"')
+
+
+def _count_coincident(plot: Plot, points: NDArray[np.float64]) -> None:
+    """A small number beside marks that hide others: "×3" are three designs on one spot."""
+    pixels = np.column_stack([plot.px(points[:, 0]), plot.py(points[:, 1])])
+    waiting = list(range(len(points)))
+    while waiting:
+        first = waiting[0]
+        same = [index for index in waiting if float(np.hypot(*(pixels[index] - pixels[first]))) <= _COINCIDENT]
+        waiting = [index for index in waiting if index not in same]
+        if len(same) > 1:
+            plot.text(points[first, 0], points[first, 1], f"×{len(same)}", "count", dx=6, dy=-5)
 
 
 def pick(

@@ -8,11 +8,13 @@ from __future__ import annotations
 import html
 import itertools
 import math
+import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
+from scipy.interpolate import PchipInterpolator
 
 Limits = tuple[float, float]
 Array = NDArray[np.float64]
@@ -68,6 +70,47 @@ def padded(values: ArrayLike, fraction: float = 0.06, include: Iterable[float] =
 def escape(text: str) -> str:
     """Text made safe inside HTML and attributes."""
     return html.escape(text, quote=True)
+
+
+def _symbol_parts(text: str) -> list[tuple[str, str]]:
+    """("R", "T1"), (" [kN]", "") from "R_T1 [kN]": an underscore makes a subscript of what follows, up to a blank."""
+    pieces = re.split(r"_([^\s,;:)\]]+)", text)
+    return list(zip(pieces[::2], [*pieces[1::2], ""], strict=True))
+
+
+def symbol_html(text: str) -> str:
+    """A quantity's symbol with its subscripts, for tables."""
+    return "".join(
+        escape(base) + (f"<sub>{escape(below)}</sub>" if below else "") for base, below in _symbol_parts(text)
+    )
+
+
+def symbol_svg(text: str) -> str:
+    """The same inside an SVG text."""
+    drawn, lowered = [], False
+    for base, below in _symbol_parts(text):
+        if base:
+            drawn.append(f'<tspan dy="-3">{escape(base)}</tspan>' if lowered else escape(base))
+            lowered = False
+        if below:
+            drawn.append(f'<tspan class="sub" dy="3">{escape(below)}</tspan>')
+            lowered = True
+    return "".join(drawn)
+
+
+def symbol_plain(text: str) -> str:
+    """The same for a tooltip, which cannot have any."""
+    return text.replace("_", "")
+
+
+def smooth(x: ArrayLike, y: ArrayLike, count: int = 160) -> tuple[Array, Array]:
+    """A curve through computed points without overshoot (PCHIP), for the eye; gaps where a point is not finite."""
+    x, y = np.asarray(x, dtype=float), np.asarray(y, dtype=float)
+    keep = np.isfinite(x) & np.isfinite(y)
+    if keep.sum() < 4 or np.any(np.diff(x[keep]) <= 0.0):
+        return x, y
+    fine = np.union1d(np.linspace(x[keep][0], x[keep][-1], count), x[keep])
+    return fine, np.asarray(PchipInterpolator(x[keep], y[keep])(fine))
 
 
 @dataclass
@@ -148,7 +191,7 @@ class Plot:
         """A text at a place of the data, moved by px."""
         a, b = float(self.px(x)) + dx, float(self.py(y)) + dy
         self._over.append(
-            f'<text x="{a:.1f}" y="{b:.1f}" text-anchor="{anchor}" class="note {css}">{escape(text)}</text>'
+            f'<text x="{a:.1f}" y="{b:.1f}" text-anchor="{anchor}" class="note {css}">{symbol_svg(text)}</text>'
         )
 
     def vertical(self, x: float, css: str) -> None:
@@ -193,8 +236,6 @@ class Plot:
         attributes: str = "",
         x_count: int = 6,
         y_count: int = 5,
-        right_title: str = "",
-        right_limits: Limits | None = None,
     ) -> str:
         """The whole chart.
 
@@ -202,7 +243,6 @@ class Plot:
             chart: its name for the browser's events.
             attributes: data-drag, data-hover, data-click, data-box as page.js reads them.
             x_count, y_count: about how many ticks.
-            right_title, right_limits: a second scale at the right.
         """
         left, right, top, bottom = self.margins
         x_end, y_end = self.width - right, self.height - bottom
@@ -211,39 +251,32 @@ class Plot:
         for value, text in zip(x_ticks, tick_texts(x_ticks), strict=True):
             a = float(self.px(value))
             grid.append(f"M{a:.1f} {top:.1f}V{y_end:.1f}")
-            labels.append(f'<text x="{a:.1f}" y="{y_end + 14:.1f}" text-anchor="middle" class="tick">{text}</text>')
+            # a label at the very end must not run out of the picture
+            end = a + 3.2 * len(text) > self.width
+            place = f'x="{self.width - 1:.1f}" text-anchor="end"' if end else f'x="{a:.1f}" text-anchor="middle"'
+            labels.append(f'<text {place} y="{y_end + 14:.1f}" class="tick">{text}</text>')
         for value, text in zip(y_ticks, tick_texts(y_ticks), strict=True):
             b = float(self.py(value))
             grid.append(f"M{left:.1f} {b:.1f}H{x_end:.1f}")
             labels.append(f'<text x="{left - 6:.1f}" y="{b + 4:.1f}" text-anchor="end" class="tick">{text}</text>')
-        if right_limits is not None:
-            values = ticks(right_limits, y_count)
-            for value, text in zip(values, tick_texts(values), strict=True):
-                part = (value - right_limits[0]) / (right_limits[1] - right_limits[0])
-                b = y_end - part * self.plot_height
-                labels.append(f'<text x="{x_end + 6:.1f}" y="{b + 4:.1f}" class="tick">{text}</text>')
-            middle = top + self.plot_height / 2
-            labels.append(
-                f'<text transform="translate({self.width - 10:.1f} {middle:.1f}) rotate(90)" '
-                f'text-anchor="middle" class="axis-title">{escape(right_title)}</text>'
-            )
         middle = left + self.plot_width / 2
         labels.append(
             f'<text x="{middle:.1f}" y="{self.height - 4:.1f}" text-anchor="middle" class="axis-title">'
-            f"{escape(self.x_title)}</text>"
+            f"{symbol_svg(self.x_title)}</text>"
         )
         middle = top + self.plot_height / 2
         labels.append(
             f'<text transform="translate(12 {middle:.1f}) rotate(-90)" text-anchor="middle" '
-            f'class="axis-title">{escape(self.y_title)}</text>'
+            f'class="axis-title">{symbol_svg(self.y_title)}</text>'
         )
         clip = f"clip-{chart}"
         limits = ",".join(f"{value:.10g}" for value in (*self.x_limits, *self.y_limits))
         area = f"{left:g},{top:g},{self.plot_width:g},{self.plot_height:g}"
         return (
             f'<svg class="chart" data-chart="{chart}" data-plot="{area}" data-limits="{limits}" {attributes} '
-            f'viewBox="0 0 {self.width:g} {self.height:g}" role="img" aria-label="{escape(self.y_title)} against '
-            f'{escape(self.x_title)}"><clipPath id="{clip}"><rect x="{left - 1:g}" y="{top - 1:g}" '
+            f'viewBox="0 0 {self.width:g} {self.height:g}" role="img" '
+            f'aria-label="{escape(symbol_plain(self.y_title))} against {escape(symbol_plain(self.x_title))}">'
+            f'<clipPath id="{clip}"><rect x="{left - 1:g}" y="{top - 1:g}" '
             f'width="{self.plot_width + 2:g}" height="{self.plot_height + 2:g}"/></clipPath>'
             f'<rect x="{left:g}" y="{top:g}" width="{self.plot_width:g}" height="{self.plot_height:g}" class="area"/>'
             f'<path d="{"".join(grid)}" class="grid"/><g clip-path="url(#{clip})">{"".join(self._elements)}</g>'
@@ -300,6 +333,6 @@ def legend(entries: Sequence[tuple[str, str, str]]) -> str:
             width = 12
         parts.append(
             f'<span class="key"><svg width="{width}" height="12" viewBox="0 0 {width} 12">{drawn}</svg>'
-            f"{escape(word)}</span>"
+            f"{symbol_html(word)}</span>"
         )
     return f'<div class="legend">{"".join(parts)}</div>'

@@ -7,7 +7,9 @@ import math
 import numpy as np
 
 from explorer.scene.pressure import PressureMap
+from explorer.scene.transfer import transferred
 from hpsop_core.geometry.propeller import Propeller
+from hpsop_core.geometry.propeller_mesh import propeller_view_parts
 from hpsop_core.geometry.propeller_surface import rotate_blade, to_cartesian
 from hpsop_core.hydro.blade_panels import BladePanelSettings, blade_panel_model
 
@@ -46,9 +48,13 @@ def blade_pressure(propeller: Propeller, advance_coefficient: float) -> Pressure
     blades = [
         rotate_blade(nodes, blade, propeller.blade_count).reshape(-1, 3) for blade in range(propeller.blade_count)
     ]
-    return PressureMap(
-        np.concatenate(blades) * _TO_SHIP,
+    shown, shown_faces = propeller_view_parts(propeller, "view")["blades"]
+    carried = transferred(
+        np.concatenate(blades),
         np.concatenate([faces + k * index.size for k in range(propeller.blade_count)]),
         np.tile(value, propeller.blade_count),
-        f"level 2, blade panels, J {advance_coefficient:.3f}, on ½ρ(V_A² + (0.7πnD)²)",
+        shown,
+        shown_faces,
     )
+    note = f"level 2, J {advance_coefficient:.3f}, on ½ρ(V<sub>A</sub>² + (0.7πnD)²)"
+    return PressureMap(shown * _TO_SHIP, shown_faces, carried, note)

@@ -4,9 +4,23 @@ from __future__ import annotations
 
 from dataclasses import dataclass
 
-PRESETS = ("perspective", "profile", "plan", "body", "propeller")
-TITLES = {"perspective": "Perspective", "profile": "Profile", "plan": "Plan", "body": "Body", "propeller": "Propeller"}
+import numpy as np
+from numpy.typing import NDArray
+
+PRESETS = ("perspective", "below", "profile", "plan", "body", "propeller")
+TITLES = {
+    "perspective": "Perspective",
+    "below": "From below",
+    "profile": "Profile",
+    "plan": "Plan",
+    "body": "Body",
+    "propeller": "Propeller",
+}
+Array = NDArray[np.float64]
 Point = tuple[float, float, float]
+_UP: Point = (0.0, 0.0, 1.0)
+# part of the picture that stays empty on each side
+_MARGIN = 0.04
 
 
 @dataclass(frozen=True)
@@ -22,38 +36,54 @@ class CameraPose:
 def preset(
     name: str, length: float, breadth: float, draft: float, shaft: tuple[float, float], diameter: float, aspect: float
 ) -> CameraPose:
-    """A preset for a ship of this size.
+    """A preset for a ship of this size: all of it in the picture, as large as the 3D view allows.
 
     Args:
         name: one of PRESETS.
         length, breadth, draft: m.
-        shaft: x of the boss's end and height of the shaft, m.
+        shaft: x of the propeller's centre and height of the shaft, m.
         diameter: of the propeller, m.
         aspect: width over height of the 3D view.
     """
-    middle = (0.5 * length, 0.0, 0.9 * draft)
-    up: Point = (0.0, 0.0, 1.0)
-    # Profile, plan and body use a long lens from far away: nearly the parallel projection of a lines drawing.
-    lens = 0.14
-
-    def distance(width: float, height: float) -> float:
-        wanted = max(height, width / max(aspect, 0.2))
-        return 0.5 * wanted / 0.0701
-
-    if name == "profile":
-        away = distance(1.12 * length, 3.0 * draft)
-        return CameraPose((middle[0], -away, middle[2]), middle, up, lens)
-    if name == "plan":
-        away = distance(1.12 * length, 1.6 * breadth)
-        return CameraPose((middle[0], 0.0, middle[2] + away), middle, (0.0, 1.0, 0.0), lens)
-    if name == "body":
-        away = distance(1.5 * breadth, 2.6 * draft)
-        look = (0.5 * length, 0.0, 0.95 * draft)
-        return CameraPose((look[0] + away, 0.0, look[2]), look, up, lens)
     if name == "propeller":
-        look = (shaft[0] - 0.1 * diameter, 0.0, shaft[1])
-        reach = 2.1 * diameter * max(1.0, 1.1 / max(aspect, 0.3))
-        return CameraPose((look[0] - 0.86 * reach, -0.52 * reach, look[2] + 0.10 * reach), look, up, 0.75)
-    reach = 0.66 * length * max(1.0, 1.7 / max(aspect, 0.3))
-    look = (0.53 * length, 0.0, 0.6 * draft)
-    return CameraPose((look[0] + 0.62 * reach, -1.08 * reach, look[2] + 0.42 * reach), look, up, 0.75)
+        look = (shaft[0] + 0.05 * diameter, 0.0, shaft[1] + 0.02 * diameter)
+        reach = 2.0 * diameter * max(1.0, 1.1 / max(aspect, 0.3))
+        return CameraPose((look[0] - 0.86 * reach, -0.52 * reach, look[2] + 0.10 * reach), look, _UP, 0.75)
+    # what has to be seen: from the counter to the bulb, from the keel to the deck of the parent
+    x0, x1, deck = -0.03 * length, 1.025 * length, 2.4 * draft
+    corners = np.array([(x, y, z) for x in (x0, x1) for y in (-breadth / 2, breadth / 2) for z in (0.0, deck)])
+    # a narrow view looks along the ship more than across it
+    side = float(np.interp(aspect, (0.6, 1.8), (0.66, 1.75)))
+    # Profile, plan and body use a long lens from far away: nearly the parallel projection of a lines drawing.
+    direction, up, lens = {
+        "profile": ((0.0, -1.0, 0.0), _UP, 0.14),
+        "plan": ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), 0.14),
+        "body": ((1.0, 0.0, 0.0), _UP, 0.14),
+        "below": ((0.9, -0.9 * side, -0.42), _UP, 0.75),
+    }.get(name, ((0.9, -0.9 * side, 0.40), _UP, 0.75))
+    return _framed(corners, np.array(direction), up, lens, aspect)
+
+
+def _framed(corners: Array, direction: Array, up: Point, lens: float, aspect: float) -> CameraPose:
+    """The nearest stand in ``direction`` from which all corners lie in the picture, looking at their middle."""
+    backward = direction / np.linalg.norm(direction)
+    right = np.cross(np.array(up), backward)
+    right /= np.linalg.norm(right)
+    above = np.cross(backward, right)
+    tangents = np.array([np.tan(lens / 2.0) * max(aspect, 0.2), np.tan(lens / 2.0)]) * (1.0 - 2.0 * _MARGIN)
+    look = corners.mean(axis=0)
+    for _ in range(8):
+        # perspective makes the near end larger, so the middle of the picture is not the middle of the ship
+        local = corners - look
+        across = np.stack([local @ right, local @ above])
+        depth = local @ backward
+        distance = float((depth + np.abs(across) / tangents[:, None]).max())
+        shown = across / (distance - depth)
+        middle = 0.5 * (shown.max(axis=1) + shown.min(axis=1))
+        look = look + distance * (middle[0] * right + middle[1] * above)
+    position = look + distance * backward
+    return CameraPose(_point(position), _point(look), up, lens)
+
+
+def _point(values: Array) -> Point:
+    return (float(values[0]), float(values[1]), float(values[2]))

@@ -29,7 +29,6 @@ class SceneGeometry:
         blades, hub: vertices about the hub's centre, turning about x, and faces.
         propeller_position: of the hub's centre.
         waterline: (n, 3) closed.
-        water: a wide sheet at the waterline.
         length, breadth, draft, diameter: m.
     """
 
@@ -39,7 +38,6 @@ class SceneGeometry:
     hub: Mesh
     propeller_position: tuple[float, float, float]
     waterline: NDArray[np.float64]
-    water: Mesh
     length: float
     breadth: float
     draft: float
@@ -61,8 +59,6 @@ def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
     port = port + np.array([0.0, 0.06])  # just outside the hull, or it would drown in it
     line = np.concatenate([port, port[::-1] * np.array([1.0, -1.0])])
     waterline = np.column_stack([line, np.full(len(line), hull.draft)])
-    x0, x1, half = -0.35 * hull.length, 1.2 * hull.length, 0.45 * hull.length
-    water = np.array([[x0, -half, hull.draft], [x1, -half, hull.draft], [x1, half, hull.draft], [x0, half, hull.draft]])
     return SceneGeometry(
         underwater=parts.get("underwater", empty),
         topsides=parts.get("topsides", empty),
@@ -70,7 +66,6 @@ def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
         hub=(hub[0] * _TO_SHIP, hub[1]),
         propeller_position=(float(propeller_plane_x(hull, propeller)), 0.0, float(hull.shaft_height)),
         waterline=waterline,
-        water=(water, np.array([[0, 1, 2], [0, 2, 3]])),
         length=hull.length,
         breadth=hull.breadth,
         draft=hull.draft,

@@ -1,4 +1,4 @@
-"""The pressure on a hull at a condition, by level 2's panels, as a mesh with a value at every vertex."""
+"""The pressure on a hull at a condition, by level 2's panels, on the mesh that the page shows."""
 
 from __future__ import annotations
 
@@ -7,7 +7,9 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from explorer.scene.transfer import transferred
 from hpsop_core.geometry.hull import Hull
+from hpsop_core.geometry.hull_mesh import hull_view_parts
 from hpsop_core.geometry.panels import block_points
 from hpsop_core.hydro.rankine import RankineFields, solve
 
@@ -20,7 +22,7 @@ class PressureMap:
 
     Attributes:
         vertices: (n, 3) m in ship axes; faces: (m, 3).
-        coefficient: (n,) on 1/2 rho V^2.
+        coefficient: (n,), as the note says.
         note: for the legend.
     """
 
@@ -29,9 +31,15 @@ class PressureMap:
     coefficient: Array
     note: str
 
+    def areas(self) -> Array:
+        """(n,) a third of the triangles around each vertex, m2."""
+        corners = self.vertices[self.faces]
+        area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
+        return np.bincount(self.faces.ravel(), np.repeat(area / 3.0, 3), minlength=len(self.vertices))
+
 
 def hull_pressure(hull: Hull, froude_number: float) -> PressureMap:
-    """(p - p0)/(1/2 rho V^2) without the hydrostatic part.
+    """(p - p0)/(1/2 rho V^2) without the hydrostatic part, on the underwater part of the "view" mesh.
 
     Raises:
         SolverFailure: the Rankine solver gives no answer.
@@ -41,12 +49,16 @@ def hull_pressure(hull: Hull, froude_number: float) -> PressureMap:
         raise ValueError("the solver was asked for fields")
     vertices, faces, values = _smooth(fields)
     mirrored = vertices * np.array([1.0, -1.0, 1.0])
-    return PressureMap(
+    shown, shown_faces = hull_view_parts(hull, "view")["underwater"]
+    coefficient = transferred(
         np.concatenate([vertices, mirrored]),
         np.concatenate([faces, faces[:, ::-1] + len(vertices)]),
         np.concatenate([values, values]),
-        f"level 2, Rankine panels, Fn {froude_number:.3f}, without the hydrostatic part",
+        shown,
+        shown_faces,
     )
+    note = f"level 2, Fn {froude_number:.3f}, on ½ρV², no hydrostatic part"
+    return PressureMap(shown, shown_faces, coefficient, note)
 
 
 def _smooth(fields: RankineFields) -> tuple[Array, NDArray[np.int64], Array]:

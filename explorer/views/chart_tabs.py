@@ -19,17 +19,17 @@ from explorer.charts.parallel import parallel_chart
 from explorer.charts.plot import escape
 from explorer.quantities import VARIABLES, all_quantities
 from explorer.state import Session
-from explorer.views.charts_view import WIDTH, ChartTab, on_display
+from explorer.views.charts_view import ChartTab, on_display
 from hpsop_core.evaluation_result import Evaluation
 
 
-def _height(session: Session, share: float = 0.30, least: float = 215.0, most: float = 330.0) -> float:
+def _height(session: Session, share: float, least: float = 215.0, most: float = 330.0) -> float:
     return min(max(share * session.size[1], least), most)
 
 
 def _open_water(session: Session) -> str:
     designs = [(series, shown.evaluation) for series, shown in on_display(session)]
-    return open_water_chart(designs, WIDTH, _height(session, 0.34))
+    return open_water_chart(designs, session.chart_width, _height(session, 0.30))
 
 
 def _with_curves(session: Session) -> list[tuple[Series, Evaluation, DesignCurves]]:
@@ -53,12 +53,17 @@ def _resistance(session: Session) -> str:
     designs = _with_curves(session)
     height = _height(session, 0.24, 190.0, 260.0)
     level = session.selected.evaluation.level if session.selected else 1
-    note = f'<p class="soft">Level {level}; marks are the operating conditions.</p>'
-    return resistance_chart(designs, "total", WIDTH, height) + resistance_chart(designs, "wave", WIDTH, height) + note
+    waiting = "" if len(designs) == len(on_display(session)) else " The other designs' curves are being computed …"
+    note = f'<p class="soft">Level {level}, each at its own Froude number; marks are the conditions.{waiting}</p>'
+    return (
+        resistance_chart(designs, "total", session.chart_width, height)
+        + resistance_chart(designs, "wave", session.chart_width, height)
+        + note
+    )
 
 
 def _thrust(session: Session) -> str:
-    return thrust_chart(_with_curves(session), WIDTH, _height(session, 0.34))
+    return thrust_chart(_with_curves(session), session.chart_width, _height(session, 0.30))
 
 
 def _with_lines(session: Session) -> list[tuple[Series, HullLines]]:
@@ -71,8 +76,8 @@ def _with_lines(session: Session) -> list[tuple[Series, HullLines]]:
 
 def _lines(session: Session) -> str:
     lines = _with_lines(session)
-    return body_plan(lines, WIDTH, _height(session, 0.36, 230.0, 330.0)) + sectional_area_chart(
-        lines, WIDTH, _height(session, 0.24, 180.0, 240.0)
+    return body_plan(lines, session.chart_width, _height(session, 0.31, 220.0, 330.0)) + sectional_area_chart(
+        lines, session.chart_width, _height(session, 0.24, 180.0, 240.0)
     )
 
 
@@ -82,7 +87,7 @@ def _parallel(session: Session) -> str:
         session.filters,
         session.selected.design_id if session.selected else None,
         session.scrubbed,
-        WIDTH,
+        session.chart_width,
         _height(session, 0.36, 240.0, 360.0),
     )
 
@@ -103,8 +108,8 @@ def _convergence(session: Session) -> str:
     height = _height(session, 0.26, 190.0, 270.0)
     note = '<p class="soft">Hypervolume of the feasible front against (1.2, 1.2); each level has its own series.</p>'
     return (
-        convergence_chart(numbers, levels, values, picture.total_generations, WIDTH, height)
-        + best_chart(numbers, best, picture.total_generations, WIDTH, height)
+        convergence_chart(numbers, levels, values, picture.total_generations, session.chart_width, height)
+        + best_chart(numbers, best, picture.total_generations, session.chart_width, height)
         + note
     )
 
@@ -135,14 +140,14 @@ def _failures(session: Session) -> str:
 
 _DESIGN = frozenset({"selection", "pins"})
 _TABS = (
-    ChartTab("open_water", "Open water", _DESIGN, _open_water),
-    ChartTab("resistance", "Resistance", _DESIGN | {"curves"}, _resistance),
-    ChartTab("thrust", "Thrust", _DESIGN | {"curves"}, _thrust),
-    ChartTab("lines", "Lines", _DESIGN, _lines),
-    ChartTab("parallel", "Parallel", frozenset({"run", "filter", "selection", "scrub"}), _parallel),
-    ChartTab("drivers", "Drivers", frozenset({"run"}), _drivers),
-    ChartTab("convergence", "Convergence", frozenset({"run"}), _convergence),
-    ChartTab("failures", "Failures", frozenset({"run"}), _failures),
+    ChartTab("open_water", "Open water", "design", _DESIGN, _open_water),
+    ChartTab("resistance", "Resistance", "design", _DESIGN | {"curves"}, _resistance),
+    ChartTab("thrust", "Thrust", "design", _DESIGN | {"curves"}, _thrust),
+    ChartTab("lines", "Lines", "design", _DESIGN, _lines),
+    ChartTab("parallel", "Parallel coordinates", "run", frozenset({"run", "filter", "selection", "scrub"}), _parallel),
+    ChartTab("drivers", "Drivers", "run", frozenset({"run"}), _drivers),
+    ChartTab("convergence", "Convergence", "run", frozenset({"run"}), _convergence),
+    ChartTab("failures", "Failures", "run", frozenset({"run"}), _failures),
 )
 
 

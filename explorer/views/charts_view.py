@@ -13,9 +13,6 @@ from explorer.state import Session, Shown
 from explorer.views.chips import box, chip, chips
 from explorer.views.slot import Slot
 
-WIDTH = 470.0
-_DASHES = ("dash", "dot", "dash", "dot")
-
 
 @dataclass(frozen=True)
 class ChartTab:
@@ -25,11 +22,13 @@ class ChartTab:
         name: for events.
         title: on its button.
         topics: what it is drawn from.
+        of: "design" or "run": which row its button stands in.
         render: the HTML; called on the session's worker.
     """
 
     name: str
     title: str
+    of: str
     topics: frozenset[str]
     render: Callable[[Session], str]
 
@@ -51,9 +50,14 @@ class ChartsView:
     def draw(self) -> None:
         """Draw the bar and the chosen chart."""
         chosen = self._chosen()
-        self._bar.show(
-            box(chips(*(chip("tab", tab.title, tab.name, on=tab.name == chosen.name) for tab in self._tabs.values())))
+        rows = "".join(
+            f'<span class="soft">{word}</span>'
+            + chips(
+                *(chip("tab", tab.title, tab.name, on=tab is chosen) for tab in self._tabs.values() if tab.of == of)
+            )
+            for of, word in (("design", "Design"), ("run", "Run"))
         )
+        self._bar.show(box(f'<div class="tools">{rows}</div>'))
         self._html.show(box(f'<div data-chart-tab="{chosen.name}">{chosen.render(self._session)}</div>'))
 
     def _topic(self, topic: str) -> None:
@@ -81,7 +85,8 @@ def on_display(session: Session) -> list[tuple[Series, Shown]]:
         shown.append((Series("initial", "initial", "dash"), initial))
     for index, item in enumerate(session.pins):
         if selected is None or item.key != selected.key:
-            shown.append((Series(f"pinned {item.label.lower()}", f"pin{index + 1}", _DASHES[index]), item))
+            other = f" (level {item.evaluation.level})" if item.evaluation.level != level else ""
+            shown.append((Series(f"pinned {item.label.lower()}{other}", f"pin{index + 1}"), item))
     if selected is not None and selected.kind != "initial":
         shown.append((Series(selected.label, "selected"), selected))
     return shown

@@ -18,8 +18,9 @@ class CompareView:
     def __init__(self, session: Session, gui: viser.GuiApi) -> None:
         self._session = session
         self._html = Slot(gui)
-        session.hub.on(("pins",), self.draw)
+        session.hub.on(("pins", "options", "selection"), self.draw)
         session.handle("act", "unpin", self._unpin)
+        session.handle("act", "ghost_pin", self._ghost)
         session.handle("act", "show_pin", self._show)
         self.draw()
 
@@ -30,29 +31,44 @@ class CompareView:
             self._html.show(
                 box(
                     '<p class="soft">No design is pinned. Select one and press <b>pin</b> in the Design tab: up to '
-                    "four stand here side by side, their curves and body plans overlay in Charts, and the first pin's "
-                    "hull can be the ghost in 3D.</p>"
+                    "four stand here side by side with their difference to the initial design, their curves and body "
+                    "plans overlay in Charts, and each of them can be the ghost beside the selected hull in 3D.</p>"
                 )
             )
             return
         rows = []
         for index, item in enumerate(session.pins):
-            level = f"level {item.evaluation.level}"
+            ghosted = session.options.ghost and session.options.ghost_of == item.name
+            selected = session.selected is not None and session.selected.key == item.key
             rows.append(
                 chips(
-                    f'<span style="color:var(--hp-pin{index + 1})">▲</span> <b>{escape(item.label)}</b> '
-                    f'<span class="soft">{level}</span><span class="gap"></span>',
-                    chip("show_pin", "show", str(index)),
+                    f'<span class="pinned" style="--pin:var(--hp-pin{index + 1})">▲ <b>{escape(item.label)}</b></span>'
+                    f'<span class="soft">level {item.evaluation.level}</span><span class="gap"></span>',
+                    chip("show_pin", "show", str(index), on=selected, hint="select this design"),
+                    chip("ghost_pin", "ghost", str(index), on=ghosted, hint="this hull as the ghost in 3D"),
                     chip("unpin", "unpin", str(index)),
                 )
             )
-        initial = session.app.initial_shown(session.pins[-1].evaluation.level)
-        table = many_table(initial, session.pins, session.picture.case.conditions.froude_numbers)
+        levels = {item.evaluation.level for item in session.pins}
+        if len(levels) > 1:
+            rows.append(
+                '<p class="soft">Levels differ: each is compared with the initial design at its own level; the '
+                f"column “initial” is level {session.pins[-1].evaluation.level}.</p>"
+            )
+        initials = {level: session.app.initial_shown(level) for level in levels}
+        table = many_table(initials, session.pins, session.picture.case.conditions.froude_numbers)
         self._html.show(box("".join(rows) + table))
 
     def _index(self, event: PageEvent) -> int | None:
         index = int(event.arg) if event.arg.isdecimal() and len(event.arg) < 3 else -1
         return index if 0 <= index < len(self._session.pins) else None
+
+    def _ghost(self, event: PageEvent) -> None:
+        index = self._index(event)
+        if index is not None:
+            options, name = self._session.options, self._session.pins[index].name
+            same = options.ghost and options.ghost_of == name
+            self._session.set_options(ghost=not same, ghost_of="initial" if same else name)
 
     def _unpin(self, event: PageEvent) -> None:
         index = self._index(event)

@@ -9,11 +9,14 @@ import numpy as np
 import trimesh
 import viser
 
-from explorer.scene.colours import pressure_colours, pressure_legend, sea_colours, sea_legend
+from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, pressure_legend, sea_legend
 from explorer.scene.pressure import PressureMap
-from explorer.scene.waves import wave_mesh
+from explorer.scene.waves import wave_surface
 from explorer.state import Session, Shown
 from hpsop_core.errors import HpsopError
+
+# the hull's underwater part stays visible, faintly
+_WATER_OPACITY = 0.9
 
 
 class OverlayView:
@@ -73,30 +76,30 @@ class OverlayView:
         hull = shown.evaluation.hull
         if hull is None:
             return
-        vertices, faces, heights = wave_mesh(field, hull.draft)
+        surface = wave_surface(field, hull.draft)
         # The few highest crests at the bow must not wash out the rest.
-        reach = max(float(np.percentile(np.abs(heights), 97.0)), 0.05)
-        self._show("waves", "/waves", vertices, faces, sea_colours(heights, reach))
+        reach = max(float(np.percentile(np.abs(surface.elevation), 97.0)), 0.05)
+        opacity = _WATER_OPACITY * surface.opacity
+        mesh = painted(surface.vertices, surface.faces, surface.elevation, (-reach, 0.0, reach), SEA, opacity)
+        self._show("waves", "/waves", mesh)
         self._session.legends["waves"] = sea_legend(reach, f"{field.note}; true scale")
 
     def _pressure(self, shown: Shown, index: int) -> None:
         found = self._session.app.services.hull_pressure(shown.evaluation, index)
-        self._map("pressure", "/ship/pressure", found, "hull Cp [–]")
+        self._map("pressure", "/ship/pressure", found, "hull pressure C<sub>p</sub> [–]")
 
     def _blades(self, shown: Shown, index: int) -> None:
         found = self._session.app.services.blade_pressure(shown.evaluation, index)
         if found is not None:
-            self._map("blades", "/ship/propeller/pressure", found, "blade Cp [–]")
+            self._map("blades", "/ship/propeller/pressure", found, "blade pressure C<sub>p</sub> [–]")
         else:
             self._session.legends.pop("blades", None)
 
     def _map(self, name: str, node: str, found: PressureMap, title: str) -> None:
-        low, high = (float(value) for value in np.percentile(found.coefficient, (2.0, 98.0)))
-        self._show(name, node, found.vertices, found.faces, pressure_colours(found.coefficient, low, high))
-        self._session.legends[name] = pressure_legend(title, low, high, found.note)
+        limits = around_zero(found.coefficient, found.areas())
+        self._show(name, node, painted(found.vertices, found.faces, found.coefficient, limits, PRESSURE))
+        self._session.legends[name] = pressure_legend(title, limits, found.note)
 
-    def _show(self, name: str, node: str, vertices: np.ndarray, faces: np.ndarray, colours: np.ndarray) -> None:
+    def _show(self, name: str, node: str, mesh: trimesh.Trimesh) -> None:
         # Colours travel only with a whole mesh (GLB): replaced on selection, never during a drag.
-        alpha = np.full((len(colours), 1), 255, dtype=np.uint8)
-        mesh = trimesh.Trimesh(vertices, faces, vertex_colors=np.hstack([colours, alpha]), process=False)
         self._nodes[name] = self._client.scene.add_mesh_trimesh(node, mesh, cast_shadow=False, receive_shadow=False)

@@ -13,6 +13,7 @@ import viser
 from explorer.bridge import PageEvent
 from explorer.scene.camera import PRESETS, preset
 from explorer.scene.geometry import SceneGeometry
+from explorer.scene.surroundings import backdrop, calm_water
 from explorer.state import Session, Shown
 from hpsop_core.errors import HpsopError
 
@@ -20,9 +21,13 @@ UNDERWATER = (176, 84, 66)
 TOPSIDES = (92, 112, 134)
 BRONZE = (196, 150, 72)
 HUB = (150, 118, 66)
-GHOST = (130, 140, 150)
-WATER = (72, 130, 170)
+# the initial design's grey and the pins' colours on the charts (assets/page.css)
+GHOST = (107, 119, 133)
+PINS = ((11, 114, 133), (166, 30, 77), (92, 148, 13), (134, 46, 156))
 WATERLINE = (235, 240, 245)
+# the sea reaches this many ship lengths from midships
+_SEA_LENGTHS = 1.15
+_GHOST_OPACITY = 0.28
 # the propeller turns at a quarter of its real rate: a screen cannot show 100 rpm of five blades
 _SPIN_SCALE = 0.25
 _FRAME_SECONDS = 1.0 / 25.0
@@ -38,8 +43,10 @@ class SceneView:
         self._faces: dict[str, int] = {}
         self._drawn: tuple[object, ...] = ()
         self._geometry: SceneGeometry | None = None
+        self._framed: tuple[float, float, float] | None = None
         self._placed: np.ndarray | None = None
         self._spinning = threading.Event()
+        self._dark: bool | None = None
         self.shown_design: object = None
         client.scene.configure_default_lights(cast_shadow=False)
         # light from below as well: half of what a naval architect looks at is under water
@@ -55,27 +62,31 @@ class SceneView:
     def _ask(self) -> None:
         self._session.heavy.latest("geometry", self.draw)
 
-    def _ghosted(self) -> Shown | None:
+    def _ghosted(self) -> tuple[Shown | None, tuple[int, int, int]]:
+        """The design that stands as the ghost, and its colour."""
         session = self._session
         if not session.options.ghost or session.selected is None:
-            return None
-        if session.pins:
-            other = [item for item in session.pins if item.key != session.selected.key]
-            if other:
-                return other[0]
-        return session.app.initial_shown(session.selected.evaluation.level)
+            return None, GHOST
+        for index, item in enumerate(session.pins):
+            if item.name == session.options.ghost_of:
+                return item, PINS[index]
+        return session.app.initial_shown(session.selected.evaluation.level), GHOST
 
     def draw(self) -> None:
         """Bring the scene to the session's selection and options."""
         session = self._session
         shown, options = session.selected, session.options
+        if options.dark != self._dark:
+            self._dark = options.dark
+            self._client.scene.set_background_image(backdrop(options.dark), format="png")
         if shown is None:
             return
-        ghost = self._ghosted()
+        ghost, ghost_colour = self._ghosted()
         state = (
             shown.key,
             options.ghost,
             ghost.key if ghost else None,
+            ghost_colour,
             options.topsides,
             options.water,
             options.waves,
@@ -86,22 +97,33 @@ class SceneView:
         if state != self._drawn:
             try:
                 geometry = session.app.services.geometry(shown.evaluation.variables)
-                ghost_lines = session.app.services.ghost(ghost.evaluation.variables) if ghost else None
+                variables = ghost.evaluation.variables if ghost else None
+                behind = (
+                    (session.app.services.geometry(variables), session.app.services.ghost(variables))
+                    if variables
+                    else None
+                )
             except HpsopError as error:
                 session.notify("No geometry for this design", str(error), "yellow")
                 return
-            before, self._geometry = self._geometry, geometry
+            before, self._framed = self._framed, _bounds(geometry, behind[0] if behind else None)
+            self._geometry = geometry
             with self._client.atomic():
-                self._draw_ship(geometry, ghost_lines)
+                self._draw_ship(geometry, behind, ghost_colour)
             self._client.flush()
             self._drawn = state
             self.shown_design = shown.design_id if shown.design_id is not None else shown.kind
             # A ship of another size is framed anew, unless the user has moved the camera.
-            if before is None or (abs(before.length - geometry.length) > 0.02 * before.length and self._unmoved()):
+            if before is None or (abs(before[0] - self._framed[0]) > 0.02 * before[0] and self._unmoved()):
                 self.place_camera()
         self._spin()
 
-    def _draw_ship(self, geometry: SceneGeometry, ghost: np.ndarray | None) -> None:
+    def _draw_ship(
+        self,
+        geometry: SceneGeometry,
+        ghost: tuple[SceneGeometry, np.ndarray] | None,
+        ghost_colour: tuple[int, int, int],
+    ) -> None:
         options = self._session.options
         close_up = options.camera == "propeller"
         self._mesh(
@@ -116,19 +138,24 @@ class SceneView:
         self._mesh("blades", "/ship/propeller/blades", *geometry.blades, color=BRONZE, visible=not options.pressure)
         self._mesh("hub", "/ship/propeller/hub", *geometry.hub, color=HUB)
         self._lines("waterline", "/ship/waterline", geometry.waterline, WATERLINE)
-        self._mesh(
-            "water",
-            "/water",
-            *geometry.water,
-            color=WATER,
-            opacity=0.28,
-            visible=options.water and not close_up and not options.waves,
-        )
+        self._water(geometry, options.water and not close_up and not options.waves)
         if ghost is not None:
-            self._lines("ghost", "/ghost", ghost, GHOST)
-            self._handles["ghost"].visible = True
-        elif "ghost" in self._handles:
-            self._handles["ghost"].visible = False
+            shell, lines = ghost
+            self._mesh("ghost below", "/ghost/below", *shell.underwater, color=ghost_colour, opacity=_GHOST_OPACITY)
+            self._mesh(
+                "ghost above",
+                "/ghost/above",
+                *shell.topsides,
+                color=ghost_colour,
+                opacity=_GHOST_OPACITY,
+                visible=options.topsides,
+            )
+            self._lines("ghost lines", "/ghost/lines", lines, ghost_colour, 1.0)
+            self._handles["ghost lines"].visible = True
+        else:
+            for name in ("ghost below", "ghost above", "ghost lines"):
+                if name in self._handles:
+                    self._handles[name].visible = False
 
     def _mesh(
         self,
@@ -158,14 +185,31 @@ class SceneView:
             self._handles[key], self._faces[key] = handle, topology
         else:
             handle.vertices = vertices.astype(np.float32)
+            if tuple(handle.color) != color:
+                handle.color = color
         if handle.visible != visible:
             handle.visible = visible
 
-    def _lines(self, key: str, name: str, points: np.ndarray, color: tuple[int, int, int]) -> None:
+    def _water(self, geometry: SceneGeometry, visible: bool) -> None:
+        handle = self._handles.get("water")
+        if handle is None:
+            handle = self._client.scene.add_mesh_trimesh(
+                "/water", calm_water(), cast_shadow=False, receive_shadow=False
+            )
+            self._handles["water"] = handle
+        handle.position = (0.5 * geometry.length, 0.0, geometry.draft)
+        handle.scale = _SEA_LENGTHS * geometry.length
+        if handle.visible != visible:
+            handle.visible = visible
+
+    def _lines(
+        self, key: str, name: str, points: np.ndarray, color: tuple[int, int, int], thickness: float = 1.5
+    ) -> None:
         handle = self._handles.get(key)
         segments = (points if points.ndim == 3 else np.stack([points[:-1], points[1:]], axis=1)).astype(np.float32)
         if handle is not None and handle.points.shape == segments.shape:
             handle.points = segments
+            handle.colors = np.full((len(segments), 2, 3), color, dtype=np.uint8)
             return
         if handle is not None:
             handle.remove()
@@ -173,7 +217,7 @@ class SceneView:
             name,
             segments,
             np.full((len(segments), 2, 3), color, dtype=np.uint8),
-            thickness=1.5,
+            thickness=thickness,
             thickness_units="screen",
         )
 
@@ -191,21 +235,26 @@ class SceneView:
             np.linalg.norm(placed)
         )
 
+    def _aspect(self) -> float:
+        """Width over height of the 3D view: the browser's own word, or what the docks leave while it has said none."""
+        width, height = self._session.size
+        try:
+            told = float(self._client.camera.aspect)
+        except (AssertionError, RuntimeError):
+            told = 0.0
+        return told if told > 0.0 else max(width - 840.0, 200.0) / max(height, 200.0)
+
     def place_camera(self) -> None:
         """Put the camera where its preset stands."""
-        geometry = self._geometry
-        if geometry is None:
+        geometry, framed = self._geometry, self._framed
+        if geometry is None or framed is None:
             return
-        width, height = self._session.size
-        aspect = max(width - 840.0, 200.0) / max(height, 200.0)
         pose = preset(
             self._session.options.camera,
-            geometry.length,
-            geometry.breadth,
-            geometry.draft,
+            *framed,
             (float(geometry.propeller_position[0]), float(geometry.propeller_position[2])),
             geometry.diameter,
-            aspect,
+            self._aspect(),
         )
         camera = self._client.camera
         with self._client.atomic():
@@ -241,3 +290,9 @@ class SceneView:
             if frame is not None:
                 frame.wxyz = (math.cos(angle / 2.0), math.sin(angle / 2.0), 0.0, 0.0)
             time.sleep(_FRAME_SECONDS)
+
+
+def _bounds(ship: SceneGeometry, ghost: SceneGeometry | None) -> tuple[float, float, float]:
+    """Length, breadth and draft (m) that hold the ship and its ghost."""
+    both = [ship] if ghost is None else [ship, ghost]
+    return max(item.length for item in both), max(item.breadth for item in both), max(item.draft for item in both)

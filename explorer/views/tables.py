@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
-from explorer.charts.plot import escape
+from explorer.charts.plot import escape, symbol_html
 from explorer.quantities import (
     CONSTRAINTS,
     HULL,
@@ -18,6 +18,7 @@ from explorer.quantities import (
 )
 from explorer.state import Shown
 
+_ROOM_FOR_NAMES = 4
 _PLAIN_CHANGE = {"Constraints (feasible ≤ 0)"}
 
 
@@ -55,7 +56,7 @@ def comparison_table(initial: Shown | None, selected: Shown | None, froude_numbe
         if quantity.group != group:
             group = quantity.group
             rows.append(f'<tr class="group"><td colspan="4">{escape(group)}</td></tr>')
-        plain = group in _PLAIN_CHANGE or (quantity.decimals == 0 and quantity.key == "blades")
+        plain = group in _PLAIN_CHANGE or quantity.key == "blades"
         change = change_text(first, second, quantity.decimals, relative=not plain)
         css = _tone(quantity, first, second)
         rows.append(
@@ -67,9 +68,21 @@ def comparison_table(initial: Shown | None, selected: Shown | None, froude_numbe
     return f'<table class="numbers">{"".join(rows)}</table>'
 
 
-def many_table(initial: Shown | None, designs: Sequence[Shown], froude_numbers: Sequence[float]) -> str:
-    """All numbers of several designs with the difference to the initial design below each."""
-    heads = "".join(f'<th class="pin{index + 1}">{escape(item.label)}</th>' for index, item in enumerate(designs))
+def many_table(initials: Mapping[int, Shown | None], designs: Sequence[Shown], froude_numbers: Sequence[float]) -> str:
+    """All numbers of several designs with the difference to the initial design at the same level below each.
+
+    Args:
+        initials: the initial design by level; the column "initial" is that of the last design's level.
+        designs: one or more.
+        froude_numbers: of the case.
+    """
+    initial = initials.get(designs[-1].evaluation.level)
+    heads = "".join(
+        f'<th class="pinned" style="--pin:var(--hp-pin{index + 1})">{escape(item.label)}'
+        f'<br><span class="unit">level {item.evaluation.level}</span></th>'
+        for index, item in enumerate(designs)
+    )
+    name = _name if len(designs) < _ROOM_FOR_NAMES else _short_name
     rows = [f"<tr><th></th><th>initial</th>{heads}</tr>"]
     group = ""
     for quantity in all_quantities(froude_numbers):
@@ -81,15 +94,17 @@ def many_table(initial: Shown | None, designs: Sequence[Shown], froude_numbers: 
             group = quantity.group
             rows.append(f'<tr class="group"><td colspan="{2 + len(designs)}">{escape(group)}</td></tr>')
         cells = []
-        plain = group in _PLAIN_CHANGE
+        plain = group in _PLAIN_CHANGE or quantity.key == "blades"
         for item, value in zip(designs, values, strict=True):
-            change = change_text(first, value, quantity.decimals, relative=not plain)
+            own = initials.get(item.evaluation.level)
+            base = quantity.value(own.evaluation) if own else None
+            change = change_text(base, value, quantity.decimals, relative=not plain)
             cells.append(
-                f'<td>{quantity.text(item.evaluation)}<br><span class="unit {_tone(quantity, first, value)}">'
+                f'<td>{quantity.text(item.evaluation)}<br><span class="change {_tone(quantity, base, value)}">'
                 f"{change}</span></td>"
             )
         rows.append(
-            f'<tr><td class="name">{_name(quantity)}</td>'
+            f'<tr data-compare="{quantity.key}"><td class="name">{name(quantity)}</td>'
             f"<td>{quantity.text(initial.evaluation) if initial else '–'}</td>{''.join(cells)}</tr>"
         )
     return f'<table class="numbers">{"".join(rows)}</table>'
@@ -116,12 +131,18 @@ def _card_row(quantity: Quantity, shown: Shown) -> str:
     if quantity.value(shown.evaluation) is None:
         return ""
     unit = f' <span class="unit">{quantity.unit}</span>' if quantity.unit else ""
-    return f"<tr><td>{quantity.symbol}</td><td>{quantity.text(shown.evaluation)}{unit}</td></tr>"
+    return f"<tr><td>{symbol_html(quantity.symbol)}</td><td>{quantity.text(shown.evaluation)}{unit}</td></tr>"
 
 
 def _name(quantity: Quantity) -> str:
     unit = f' <span class="unit">[{quantity.unit}]</span>' if quantity.unit else ""
-    return f"{escape(quantity.label)} <span class='unit'>{escape(quantity.symbol)}</span>{unit}"
+    return f"{escape(quantity.label)} <span class='unit'>{symbol_html(quantity.symbol)}</span>{unit}"
+
+
+def _short_name(quantity: Quantity) -> str:
+    """Symbol and unit, with the name on hover: several designs leave no room for both."""
+    unit = f' <span class="unit">[{quantity.unit}]</span>' if quantity.unit else ""
+    return f'<span title="{escape(quantity.label)}">{symbol_html(quantity.symbol)}{unit}</span>'
 
 
 def _tone(quantity: Quantity, first: float | None, second: float | None) -> str:

@@ -9,6 +9,7 @@ import viser
 from PIL import Image
 
 from explorer.bridge import PageEvent, overlay
+from explorer.charts.plot import escape
 from explorer.quantities import number_text
 from explorer.scene.camera import PRESETS, TITLES
 from explorer.state import Session
@@ -17,7 +18,7 @@ from explorer.views.slot import Slot
 from explorer.views.tables import headline
 
 _SWITCHES = (
-    ("ghost", "Ghost", "the initial design (or the first pinned one) as a ghost"),
+    ("ghost", "Ghost", "the initial design beside the selected one; choose another in Compare"),
     ("topsides", "Topsides", "the hull above the waterline"),
     ("water", "Water", "the water surface"),
     ("waves", "Waves", "wave pattern at the chosen condition"),
@@ -35,7 +36,7 @@ class ToolbarView:
         self._bar = Slot(gui)
         self._card = Slot(gui)
         session.hub.on(("options", "selection"), self.draw)
-        session.hub.on(("selection", "options", "legend"), self.draw_card)
+        session.hub.on(("selection", "options", "pins", "legend"), self.draw_card)
         session.handle("act", "switch", self._switch)
         session.handle("act", "condition", self._condition)
         session.handle("act", "screenshot", self._screenshot)
@@ -52,7 +53,7 @@ class ToolbarView:
         shown = self._session.selected
         conditions = ""
         if shown is not None and len(shown.evaluation.conditions) > 1:
-            conditions = "".join(
+            conditions = '<span class="gap"></span><span class="soft">waves, pressure and turn at</span>' + "".join(
                 chip(
                     "condition",
                     f"Fn {condition.froude_number:.3f}",
@@ -68,8 +69,9 @@ class ToolbarView:
         self._bar.show(
             overlay(
                 "toolbar",
-                f'<div class="card">{chips(cameras, other)}<div style="height:4px"></div>'
-                f"{chips(switches, conditions)}</div>",
+                f'<div class="card"><div class="tools"><span class="soft">View</span>{chips(cameras)}'
+                f'<span class="soft">Show</span>{chips(switches)}'
+                f'<span class="soft">Page</span>{chips(other, conditions)}</div></div>',
             )
         )
 
@@ -84,21 +86,31 @@ class ToolbarView:
         if evaluation.hull is not None:
             hull = evaluation.hull
             facts = (
-                f"L {hull.length:.1f} m · B {hull.breadth:.2f} m · d {hull.draft:.2f} m · "
-                f"CB {hull.block_coefficient:.3f} · V {number_text(hull.displaced_volume, 0)} m³<br>"
+                f"L<sub>PP</sub> {hull.length:.1f} m · B {hull.breadth:.2f} m · d {hull.draft:.2f} m · "
+                f"C<sub>B</sub> {hull.block_coefficient:.3f} · ∇ {number_text(hull.displaced_volume, 0)} m³<br>"
                 f"D {evaluation.variables.diameter:.2f} m · Z {evaluation.variables.blade_count} · "
                 f"f₁ {number_text(evaluation.objectives.get('f1'), 4)} · "
                 f"f₂ {number_text(evaluation.objectives.get('f2'), 4)}"
             )
+        ghost = self._ghost_words()
         legends = "".join(self._session.legends.values())
+        if legends:
+            legends = f'<div class="scales">{legends}</div>'
         self._card.show(
             overlay(
                 "card",
                 f'<div class="card" data-card="'
                 f'{shown.design_id if shown.design_id is not None else shown.kind}">'
-                f'{headline(shown)}<br><span class="soft">{facts}</span>{legends}</div>',
+                f'{headline(shown)}<br><span class="soft">{facts}{ghost}</span>{legends}</div>',
             )
         )
+
+    def _ghost_words(self) -> str:
+        options = self._session.options
+        if not options.ghost:
+            return ""
+        label = next((item.label for item in self._session.pins if item.name == options.ghost_of), "Initial design")
+        return f"<br>ghost: {escape(label[0].lower() + label[1:])}"
 
     def _switch(self, event: PageEvent) -> None:
         options = self._session.options

@@ -1,0 +1,260 @@
+"""What the page draws, against closed forms and against the numbers it is drawn from."""
+
+from __future__ import annotations
+
+import re
+
+import numpy as np
+import pytest
+from numpy.typing import NDArray
+from scipy.stats import spearmanr
+
+from explorer.charts.curves import Series, open_water_chart
+from explorer.charts.drivers import rank_correlation
+from explorer.charts.plot import Plot, smooth, symbol_html, symbol_svg, tick_texts, ticks
+from explorer.physics import Physics
+from explorer.quantities import change_text, number_text
+from explorer.scene.camera import PRESETS, preset
+from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, ramp
+from explorer.scene.transfer import transferred
+from explorer.scene.waves import kelvin_waves, kochin_functions
+from explorer.state import Shown
+from explorer.views.tables import many_table
+from hpsop_core.case import Case, load_case
+from hpsop_core.evaluation import design_hull
+from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.hydro.michell import wave_coefficients
+
+Array = NDArray[np.float64]
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    """The recommended case with stated wave coefficients, so that level 1 needs no level 2."""
+    return load_case("dtc-p4119").replaced(
+        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
+    )
+
+
+@pytest.fixture(scope="module")
+def physics() -> Physics:
+    return Physics()
+
+
+@pytest.fixture(scope="module")
+def initial(case: Case, physics: Physics) -> Evaluation:
+    return physics.initial(case, 1)
+
+
+# ---- charts ----------------------------------------------------------------------------------------------------------
+def test_rank_correlation_is_spearmans():
+    rng = np.random.default_rng(3)
+    first = rng.integers(0, 6, 200).astype(float)  # with many ties, as the number of blades has
+    second = first + rng.normal(0.0, 2.0, 200)
+    second[:5] = np.nan
+    wanted = spearmanr(first[5:], second[5:]).statistic
+    found = rank_correlation(first, second)
+    assert found is not None
+    assert abs(found - wanted) < 1e-12
+    assert rank_correlation(np.ones(50), second[:50]) is None  # a fixed variable drives nothing
+
+
+def _path(svg: str, title: str) -> tuple[Array, Array]:
+    found = re.search(r'<path d="([^"]*)"[^>]*><title>' + re.escape(title) + "</title>", svg)
+    assert found, title
+    points = np.array([[float(b) for b in a.split()] for a in re.split("[ML]", found.group(1)) if a])
+    return points[:, 0], points[:, 1]
+
+
+def test_operating_points_lie_on_the_curves_and_on_the_required_thrust(initial: Evaluation):
+    svg = open_water_chart([(Series("initial", "initial", "dash"), initial)], 480.0, 300.0)
+    curves = {word: _path(svg, f"{word}, initial") for word in ("KT", "10KQ", "η₀")}
+    marks = re.findall(r'<path d="M([\d.]+) ([\d.]+)a([\d.]+) [^"]*"[^>]*><title>initial: J(.) [^<]*, (KT|η₀)', svg)
+    assert len(marks) == 2 * len(initial.conditions)
+    for left, y, radius, which, word in marks:
+        x, y = float(left) + float(radius), float(y)
+        # a pixel is the width of a line
+        assert abs(np.interp(x, *curves[word]) - y) < 1.0
+        if word == "KT":
+            needed = _path(svg, f"required KT, condition {'₁₂'.index(which) + 1}")
+            assert abs(np.interp(x, *needed) - y) < 1.0
+
+
+def test_smooth_keeps_the_points_and_never_overshoots():
+    x = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
+    y = np.array([0.0, 0.0, 1.0, 1.0, 3.0])
+    fine, values = smooth(x, y)
+    assert np.abs(np.interp(x, fine, values) - y).max() < 1e-12
+    assert values.min() >= 0.0
+    assert np.diff(values).min() >= -1e-12
+
+
+def test_symbols_are_set_with_their_subscripts():
+    assert symbol_html("R_T1 [kN]") == "R<sub>T1</sub> [kN]"
+    assert symbol_html("K_T, 10K_Q") == "K<sub>T</sub>, 10K<sub>Q</sub>"
+    assert symbol_html("<b>") == "&lt;b&gt;"
+    # after a subscript the pen returns to the line
+    assert symbol_svg("C_B [–]") == 'C<tspan class="sub" dy="3">B</tspan><tspan dy="-3"> [–]</tspan>'
+
+
+def test_ticks_have_no_more_decimals_than_their_distance():
+    assert tick_texts(ticks((0.16, 0.30), 6)) == ["0.175", "0.200", "0.225", "0.250", "0.275", "0.300"]
+    assert tick_texts(ticks((-3.0, 3.0), 3)) == ["−2", "0", "2"]
+    # the last label ends within the picture
+    svg = Plot(470.0, 200.0, (0.0, 3e5), (0.0, 1.0), "x", "y").svg("c", x_count=3)
+    assert '<text x="469.0" text-anchor="end"' in svg
+
+
+def test_numbers_and_changes_for_people():
+    assert number_text(173391.6, 0) == "173 392"
+    assert number_text(-0.00001, 3) == "0.000"
+    assert number_text(float("nan"), 2) == "–"
+    assert change_text(3435.0, 3221.0, 0) == "−6.2 %"
+    assert change_text(3.0, 4.0, 0, relative=False) == "+1"
+    assert change_text(1.0, 1.00001, 4) == "0.0 %"
+
+
+def test_the_body_plan_encloses_the_sectional_areas(case: Case, physics: Physics):
+    lines = physics.lines(case, case.initial.variables)
+    assert {station for station, _ in lines.sections} >= {0.0, 10.0, 20.0}
+    for station, parts in lines.sections:
+        if not 3.0 <= station <= 18.0:
+            continue  # towards the ends a section is made of several parts
+        half = np.concatenate(parts)
+        half = half[np.argsort(half[:, 1], kind="stable")]
+        under = half[half[:, 1] <= lines.draft + 1e-9]
+        area = 2.0 * float(np.trapezoid(under[:, 0], under[:, 1]))
+        wanted = float(np.interp(station / 20.0, lines.area_x, lines.area))
+        # 29 points a section: a bilge of 29 points keeps its area within 1 %
+        assert abs(area - wanted) < 0.01 * wanted, station
+
+
+def test_each_pinned_design_is_compared_at_its_own_level(initial: Evaluation):
+    import dataclasses
+
+    other = dataclasses.replace(initial, level=2, objectives={**initial.objectives, "f1": 0.5})
+    base = dataclasses.replace(initial, level=2, objectives={**initial.objectives, "f1": 0.4})
+    table = many_table(
+        {1: Shown("Initial design", initial), 2: Shown("Initial design", base)},
+        [Shown("Design 7", initial), Shown("Design 8", other)],
+        (0.22, 0.27),
+    )
+    row = re.search(r'<tr data-compare="f1">(.*?)</tr>', table)
+    assert row
+    assert re.findall(r"[+−]?[\d.]+ %", row.group(1)) == ["0.0 %", "+25.0 %"]
+
+
+# ---- the 3D view -----------------------------------------------------------------------------------------------------
+@pytest.mark.parametrize("name", [name for name in PRESETS if name != "propeller"])
+@pytest.mark.parametrize("aspect", [0.5, 0.7, 1.0, 1.6, 2.4])
+def test_no_preset_cuts_the_ship(name: str, aspect: float):
+    length, breadth, draft = 355.0, 51.0, 14.5
+    pose = preset(name, length, breadth, draft, (7.5, 5.0), 9.0, aspect)
+    corners = np.array([(x, y, z) for x in (-5.0, 362.0) for y in (-25.5, 25.5) for z in (0.0, 34.0)])
+    across, up = _seen(pose, corners, aspect)
+    assert np.abs(across).max() < 1.0 and np.abs(up).max() < 1.0
+    # and it is as large as the view allows: it fills one of the directions
+    assert max(np.ptp(across), np.ptp(up)) > 1.7
+
+
+@pytest.mark.parametrize("aspect", [0.5, 0.7, 1.6])
+def test_the_close_up_shows_the_whole_propeller(aspect: float):
+    pose = preset("propeller", 355.0, 51.0, 14.5, (7.5, 5.0), 9.0, aspect)
+    turn = np.linspace(0.0, 2.0 * np.pi, 40)
+    tips = np.column_stack([np.full(40, 7.5), 4.5 * np.cos(turn), 5.0 + 4.5 * np.sin(turn)])
+    across, up = _seen(pose, tips, aspect)
+    assert np.abs(across).max() < 0.9 and np.abs(up).max() < 0.75
+    assert np.ptp(up) > 0.35
+
+
+def _seen(pose, points: Array, aspect: float) -> tuple[Array, Array]:
+    """Where points stand in the picture, from -1 to 1."""
+    backward = np.array(pose.position) - np.array(pose.look_at)
+    backward /= np.linalg.norm(backward)
+    right = np.cross(pose.up, backward)
+    right /= np.linalg.norm(right)
+    local = points - np.array(pose.position)
+    depth = -(local @ backward)
+    assert depth.min() > 0.0
+    half = np.tan(pose.field_of_view / 2.0)
+    return local @ right / depth / half / aspect, local @ np.cross(backward, right) / depth / half
+
+
+def test_a_painted_vertex_has_its_colour_on_the_scale():
+    values = np.array([-2.0, -0.5, 0.0, 0.3, 1.0, 9.0])
+    vertices = np.column_stack([values, values**2, np.zeros(6)])
+    mesh = painted(vertices, np.array([[0, 1, 2], [3, 4, 5]]), values, (-1.0, 0.0, 2.0), PRESSURE)
+    texture = np.asarray(mesh.visual.material.baseColorTexture)
+    height, width = texture.shape[:2]
+    column = np.round(mesh.visual.uv[:, 0] * width - 0.5).astype(int)
+    row = height - 1 - np.round(mesh.visual.uv[:, 1] * height - 0.5).astype(int)
+    shown = texture[row, column, :3].astype(int)
+    wanted = ramp(PRESSURE, 2001)[np.round(2000 * np.interp(values, (-1.0, 0.0, 2.0), (0.0, 0.5, 1.0))).astype(int)]
+    # half a texel of 256 along the steepest stretch of the scale
+    assert np.abs(shown - wanted).max() <= 3
+    assert (texture[row, column, 3] == 255).all()
+    assert len({tuple(colour) for colour in ramp(SEA, 5)}) == 5
+
+
+def test_limits_leave_out_spikes_and_keep_zero_in_the_middle():
+    values = np.concatenate([np.linspace(-0.2, 0.1, 1000), [50.0]])
+    low, middle, high = around_zero(values, np.ones(1001))
+    assert -0.2 <= low < -0.19 and middle == 0.0 and 0.09 < high <= 0.1
+
+
+def test_a_field_moves_to_a_finer_surface_and_stays_on_its_side():
+    # two plates 1 mm apart that face away from each other carry different linear fields
+    def plate(cells: int, z: float, up: bool) -> tuple[Array, NDArray[np.int64]]:
+        x, y = np.meshgrid(np.linspace(0, 1, cells + 1), np.linspace(0, 1, cells + 1), indexing="ij")
+        index = np.arange(x.size).reshape(x.shape)
+        a, b, c, d = index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]
+        faces = np.concatenate([np.stack([a, b, c], -1).reshape(-1, 3), np.stack([a, c, d], -1).reshape(-1, 3)])
+        return np.column_stack([x.ravel(), y.ravel(), np.full(x.size, z)]), faces if up else faces[:, ::-1]
+
+    def both(cells: int) -> tuple[Array, NDArray[np.int64], Array]:
+        (upper, first), (lower, second) = plate(cells, 0.001, True), plate(cells, 0.0, False)
+        vertices = np.concatenate([upper, lower])
+        values = np.where(vertices[:, 2] > 0.0, 1.0 + vertices[:, 0], -1.0 - vertices[:, 1])
+        return vertices, np.concatenate([first, second + len(upper)]), values
+
+    vertices, faces, values = both(4)
+    onto, onto_faces, wanted = both(13)
+    assert np.abs(transferred(vertices, faces, values, onto, onto_faces) - wanted).max() < 1e-9
+
+
+# ---- waves -----------------------------------------------------------------------------------------------------------
+def test_the_kelvin_patterns_waves_carry_michells_resistance(case: Case):
+    hull = design_hull(case, case.initial.variables)
+    table = hull.offset_table()
+    for froude in (0.22, 0.27):
+        tangent, _, ahead = kochin_functions(hull, froude)
+        k0, spectrum = 1.0 / froude**2, np.abs(ahead[:, -1]) ** 2
+        # Havelock: Rw = 4 rho U^2 k0^2/pi int s |F|^2 du, with lengths in ship lengths
+        integral = float(np.sum(np.sqrt(1.0 + tangent**2) * spectrum) * (tangent[1] - tangent[0]))
+        coefficient = 8.0 * k0**2 / np.pi * integral * hull.length**2 / hull.hydrostatics.wetted_surface
+        (wanted,) = wave_coefficients(
+            table.x, table.z - table.z[-1], table.y, hull.length, hull.hydrostatics.wetted_surface, (froude,), 2.6
+        )
+        # slices sum up one by one where Michell's cells are exact: 2 % on the parent's table
+        assert abs(coefficient - wanted) < 0.02 * wanted
+
+
+def test_transverse_waves_astern_have_kelvins_length(case: Case):
+    hull = design_hull(case, case.initial.variables)
+    for froude in (0.22, 0.27):
+        field = kelvin_waves(hull, froude, 1.0)
+        x, elevation = field.x[:, 0], field.elevation[:, 0]
+        astern = x < -0.45 * hull.length
+        x, elevation = x[astern][::-1], elevation[astern][::-1]
+        crossing = np.flatnonzero(np.diff(np.sign(elevation)))
+        at = x[crossing] - elevation[crossing] * np.diff(x)[crossing] / np.diff(elevation)[crossing]
+        half = np.diff(at).mean()
+        # on the track the spectrum around theta = 0 rules, but not alone: a few per cent shorter than 2 pi Fn2 L
+        assert 0.9 < 2.0 * half / (2.0 * np.pi * froude**2 * hull.length) < 1.03
+
+
+def test_heights_take_the_root_of_the_calibration(case: Case):
+    hull = design_hull(case, case.initial.variables)
+    plain, scaled = kelvin_waves(hull, 0.22, 1.0), kelvin_waves(hull, 0.22, 0.25)
+    assert np.allclose(scaled.elevation, 0.5 * plain.elevation)
+    assert "√0.25" in scaled.note
