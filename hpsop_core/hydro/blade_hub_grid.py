@@ -31,7 +31,8 @@ class HubSettings:
         panels_round: panels round the whole hub, shared by the blades (at least four a sector).
         cylinder_ahead, cylinder_behind: the cylinder beyond the lines that lean out from the root. A boss of endless
             length would raise KT of P4119 by 1 % at J = 0.7; end_length: of the rounded ends.
-        lean: how far the lines from the root's edges lean forward and aft, over what a line square to the chord leans.
+        lean: how far the lines from the root's edges lean forward and aft, over what lines square to the chord lean;
+            above one, or the lines would run into the round leading edge.
     """
 
     rows_cylinder: int = 3
@@ -87,10 +88,19 @@ def hub_grid(blade: BladeGrid, blade_count: int, settings: HubSettings, wake_pit
     length, turn = x_last - x_first, float(theta[0] - theta[count])
     if length <= 0.0 or turn >= 0.0:
         raise SolverFailure(STAGE, "the hub folds: the root section does not run downstream against the rotation")
+    gap, room = _gap_to_the_next(x, radius * theta, radius * sector)
+    if gap < 0.02 * room:
+        raise SolverFailure(
+            STAGE,
+            f"the roots of neighbouring blades meet on the hub: their chords are {room:.3f} R apart, of which "
+            f"{max(gap, 0.0):.3f} R are free",
+        )
     # Half way round, the helix through both edges of the root section, turned by half a sector.
     slope = turn / length
-    # Across the chord the outline leaves the leading edge at this slope; the lines must lean more.
-    lean = settings.lean * (radius * -turn / length) * (radius * 0.5 * sector)
+    # Square to the chord an edge reaches the helix sin(phi) cos(phi) times half a sector ahead of (aft of) where it
+    # would lie on the helix itself.
+    chord = np.hypot(length, radius * turn)
+    lean = settings.lean * (radius * 0.5 * sector) * length * (radius * -turn) / chord**2
     columns = max(2, round(settings.panels_round / blade_count / 2))
     fraction = np.arange(columns + 1) / columns
 
@@ -107,11 +117,6 @@ def hub_grid(blade: BladeGrid, blade_count: int, settings: HubSettings, wake_pit
 
     face_x, face_theta = block(face, True)
     back_x, back_theta = block(back, False)
-    gap = min(_least_gap(face_theta), _least_gap(back_theta))
-    if gap < 0.02 * sector:
-        raise SolverFailure(
-            STAGE, f"the roots of neighbouring blades meet on the hub: {2 * gap:.3f} rad are free of {sector:.3f}"
-        )
     for block_x, block_theta in ((face_x, face_theta), (back_x, back_theta)):
         if np.any(_plane_areas(block_x, radius * block_theta) <= 0.0):
             raise SolverFailure(STAGE, "the hub folds at the root section: a panel turns over")
@@ -152,8 +157,30 @@ def hub_grid(blade: BladeGrid, blade_count: int, settings: HubSettings, wake_pit
     )
 
 
-def _least_gap(theta: Array) -> float:
-    return float(np.min(theta[:, -1] - theta[:, 0]))
+def _gap_to_the_next(x: Array, along: Array, distance: float) -> tuple[float, float]:
+    """Least gap across the chord between a root outline and the next one, and the distance of their chords.
+
+    Args:
+        x, along: the outline in the cylinder's plane, from the trailing edge over the face to the leading edge and
+            back; `along` is r theta.
+        distance: from one blade to the next along r theta.
+
+    Returns:
+        gap (endless where the roots do not stand side by side), distance of the chords.
+    """
+    count = x.size // 2
+    chord = np.array([x[0] - x[count], along[0] - along[count]])
+    chord /= np.hypot(*chord)
+    aft, across = chord[0] * x + chord[1] * along, -chord[1] * x + chord[0] * along
+    face, back = slice(count, None, -1), slice(count, None)
+    room = float(chord[0] * distance)
+    next_aft = aft[back] + chord[1] * distance
+    low, high = max(aft[count], next_aft[0]), min(aft[0], next_aft[-1])
+    if low >= high:
+        return np.inf, room
+    place = np.linspace(low, high, 101)
+    gap = np.interp(place, next_aft, across[back]) + room - np.interp(place, aft[face], across[face])
+    return float(np.min(gap)), room
 
 
 def _plane_areas(x: Array, y: Array) -> Array:

@@ -55,7 +55,7 @@ three of them evenly spaced in the pitch would put KT 0.7 % off at J = 0.3 and 0
 _HUB_WAKE_PITCH = 0.9
 """The same of the helix along which the hub is panelled behind the blades; KT moves by 3e-4 from 0.75 to 1.05."""
 
-CAMBER_EFFECTIVENESS = 0.931
+CAMBER_EFFECTIVENESS = 0.935
 """The one viscous lift factor, fitted on the open-water test of P4119 alone (docs/theory-propeller-panels.md)."""
 
 CROSS_FLOW_DISTANCE = (0.03, 0.08)
