@@ -84,6 +84,11 @@ class RunReader:
             ).fetchone()
         return int(row[0] or 0), int(row[1])
 
+    def generations_asked(self) -> int:
+        """Generations asked for in total, extensions included: a cheap look."""
+        with self._reading() as connection:
+            return int(_values(connection)["generations"])
+
     def summary(self) -> dict[str, Any]:
         """The run in numbers, ready for JSON."""
         with self._reading() as connection:
