@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import io
 import json
 import logging
 import os
@@ -11,9 +12,11 @@ import signal
 import sys
 import threading
 import webbrowser
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from importlib.resources import as_file
 from pathlib import Path
+from typing import Any
 
 import viser
 
@@ -28,8 +31,9 @@ from explorer.worker import LatestWorker
 from hpsop_core.assets import asset_path
 from hpsop_core.case import DEFAULT_CASE, Case, load_case
 from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.runs.reader import open_run
 
-_MEMORY_FILE = "browsers.json"
+_MEMORY_FILE = "page.json"
 
 
 class Explorer:
@@ -42,6 +46,7 @@ class Explorer:
         host, port: where to listen; the port must be free.
         folder: of the user's runs.
         workers: processes of a run.
+        restored: what the settings were when the server last stopped (``remembered``), if they are to come back.
 
     Raises:
         InputError: the run file or the address cannot be used.
@@ -56,20 +61,28 @@ class Explorer:
         port: int = 8080,
         folder: Path | None = None,
         workers: int | None = None,
+        restored: Mapping[str, Any] | None = None,
     ) -> None:
         self.folder = folder or runs_folder()
         self.address = f"http://{'localhost' if host in ('0.0.0.0', '::') else host}:{port}"
         draft = Draft(case)
+        draft.begin(case)
+        if restored is not None:
+            draft.restore(restored)
+            with contextlib.suppress(InputError):
+                case = draft.case()
         worker = LatestWorker("shared")
         self.services = Services(RunLibrary(self.folder), draft, workers)
         self.state = AppState(draft, worker, Hub(worker), RunPicture("", case), self.services)
         self.services.attach(self.state)
-        self._load_memory()
+        self.state.memory = remembered(self.folder)["browsers"]
         if run is not None:
             self.services.open(run, read_only)
         self.server = secure_server(host, port, "hpsop")
         self.state.hub.on(("draft",), self.services.draft_changed)
         self.state.on_remember = lambda: worker.latest("memory", self._save_memory)
+        # the run on display and the settings come back too
+        self.state.hub.on(("draft", "library"), self._save_memory)
         self._gone = threading.Event()
         self.settings = build_shared(self.state, self.server)
         self.server.on_client_connect(self._connect)
@@ -85,7 +98,7 @@ class Explorer:
 
     def _connect(self, client: viser.ClientHandle) -> None:
         def notify(title: str, body: str, color: str) -> None:
-            colors = {"red": (201, 42, 42), "yellow": (232, 163, 23), "green": (43, 138, 62)}
+            colors = {"red": (201, 42, 42), "yellow": (232, 163, 23), "green": (43, 138, 62), "blue": (25, 113, 194)}
             with contextlib.suppress(RuntimeError):
                 client.add_notification(title, body, auto_close_seconds=8.0, color=colors.get(color, (90, 90, 90)))
 
@@ -103,17 +116,14 @@ class Explorer:
         self.state.tell_all("people")
 
     # ---- what a reload or a restart brings back --------------------------------------------------------------------
-    def _load_memory(self) -> None:
-        try:
-            stored = json.loads((self.folder / _MEMORY_FILE).read_text(encoding="utf-8"))
-        except (OSError, ValueError):
-            return
-        if isinstance(stored, dict):
-            self.state.memory = {str(key): value for key, value in stored.items() if isinstance(value, dict)}
-
     def _save_memory(self) -> None:
         with self.state.lock:
-            text = json.dumps(self.state.memory)
+            stored = {
+                "browsers": self.state.memory,
+                "run": self.state.picture.name,
+                "draft": self.state.draft.saved(),
+            }
+            text = json.dumps(stored)
         with contextlib.suppress(OSError):
             self.folder.mkdir(parents=True, exist_ok=True)
             fresh = self.folder / (_MEMORY_FILE + ".new")
@@ -129,7 +139,8 @@ class Explorer:
         """End the run (its file keeps everything) and the server; no process stays behind."""
         self._gone.set()
         self.services.close()
-        with contextlib.suppress(RuntimeError):
+        # viser says goodbye on standard output, which is ours
+        with contextlib.suppress(RuntimeError), contextlib.redirect_stdout(io.StringIO()):
             self.server.stop()
         self.state.worker.close()
 
@@ -145,34 +156,48 @@ def demonstration() -> Path | None:
         return path if path.is_file() else None
 
 
-def _chosen(what: str | None, folder: Path) -> tuple[Case, Path | None, bool]:
-    """(case to set up, run to show, whether it is read-only)."""
-    if what is None:
-        # the newest run of one's own, else the demonstration, else the bare case
-        entries = [entry for entry in RunLibrary(folder).entries() if entry.title != "not readable"]
-        if entries:
-            path = folder / entries[0].name
+def remembered(folder: Path) -> dict[str, Any]:
+    """What the page looked like when its server last stopped: browsers, run, draft; empty where nothing is known."""
+    try:
+        stored = json.loads((folder / _MEMORY_FILE).read_text(encoding="utf-8"))
+    except (OSError, ValueError):
+        stored = {}
+    found = stored if isinstance(stored, dict) else {}
+    browsers, draft = found.get("browsers"), found.get("draft")
+    return {
+        "browsers": {str(key): value for key, value in browsers.items() if isinstance(value, dict)}
+        if isinstance(browsers, dict)
+        else {},
+        "run": str(found.get("run", "")),
+        "draft": draft if isinstance(draft, dict) else None,
+    }
+
+
+@dataclass(frozen=True)
+class _Opening:
+    """What a start of the command shows: the case to set up, a run, and the settings of last time."""
+
+    case: Case
+    run: Path | None = None
+    read_only: bool = False
+    restored: Mapping[str, Any] | None = None
+
+
+def _chosen(what: str | None, folder: Path) -> _Opening:
+    if what is not None:
+        if what.endswith(".hpsop"):
+            return _Opening(open_run(what).case, Path(what))
+        return _Opening(load_case(what))
+    # where one was: the run last shown, else the newest of one's own, else the demonstration, else the bare case
+    library, memory = RunLibrary(folder), remembered(folder)
+    newest = [entry.name for entry in library.entries() if entry.title != "not readable"]
+    for name in (memory["run"], *newest):
+        path = library.path(name)
+        if path is not None:
             with contextlib.suppress(HpsopError):
-                from hpsop_core.runs.reader import open_run
-
-                return _settings_of(open_run(path).case), path, False
-        shown = demonstration()
-        return load_case(DEFAULT_CASE), shown, shown is not None
-    if what.endswith(".hpsop"):
-        from hpsop_core.runs.reader import open_run
-
-        path = Path(what)
-        return _settings_of(open_run(path).case), path, False
-    return load_case(what), None, False
-
-
-def _settings_of(case: Case) -> Case:
-    """A run's case for setting up the next one: the shipped preset where it is unchanged."""
-    with contextlib.suppress(InputError):
-        preset = load_case(case.name)
-        if preset.bounds == case.bounds and preset.conditions == case.conditions:
-            return preset
-    return case
+                return _Opening(open_run(path).case, path, restored=memory["draft"])
+    shown = demonstration()
+    return _Opening(load_case(DEFAULT_CASE), shown, shown is not None, memory["draft"])
 
 
 def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
@@ -204,9 +229,18 @@ def main(argv: Sequence[str] | None = None) -> int:
         if arguments.workers is not None and arguments.workers < 1:
             raise InputError(f"--workers {arguments.workers}: give 1 or more")
         folder = runs_folder()
-        case, run, read_only = _chosen(arguments.what, folder)
+        opening = _chosen(arguments.what, folder)
         port = free_port(arguments.host, arguments.port)
-        explorer = Explorer(case, run, read_only, arguments.host, port, folder, arguments.workers)
+        explorer = Explorer(
+            opening.case,
+            opening.run,
+            opening.read_only,
+            arguments.host,
+            port,
+            folder,
+            arguments.workers,
+            opening.restored,
+        )
     except HpsopError as error:
         sys.stderr.write(f"{error}\n")
         return 2

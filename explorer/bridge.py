@@ -1,6 +1,6 @@
 """What happens in the browser, told to Python: clicks, hovers, drags and keys on charts drawn as SVG.
 
-viser 1.1.1 sends no event from its own plots. What does work (measured, and guarded by tests/browser/test_bridge.py):
+viser 1.1.1 sends no event from its own plots. What does work (measured, and guarded by tests/browser):
 ``gui.add_html`` inserts HTML whose inline handlers run, and a hidden ``gui.add_text`` carries a text to Python when its
 input element is set and an ``input`` event dispatched. ``assets/page.js`` does both; this module is its other end.
 
@@ -23,7 +23,8 @@ import viser
 
 PAGE_VERSION = "1"
 _MAX_MESSAGE = 6000
-_NUMBERS = ("x", "y", "fx", "fy", "x0", "x1", "y0", "y1", "fx0", "fx1", "fy0", "fy1", "factor", "width", "height")
+_POINTS = ("x", "y", "fx", "fy", "x0", "x1", "y0", "y1", "fx0", "fx1", "fy0", "fy1")
+_NUMBERS = (*_POINTS, "factor", "width", "height", "drag")
 _TEXTS = ("t", "chart", "name", "arg", "key", "browser")
 
 
@@ -36,8 +37,8 @@ class PageEvent:
         chart: the chart it happened on, or "".
         name, arg: of a pressed button (kind "act").
         key: of the keyboard.
-        numbers: finite numbers by name: x, y in the chart's data, fx, fy in fractions of its plot area.
-        origin: the limits (x0, x1, y0, y1) that a pan started from.
+        numbers: finite numbers by name: x, y in the chart's data, fx, fy in fractions of its plot area; of a pan also
+            drag, which tells one drag from the next.
         shift: whether Shift was held.
         browser: the browser's own name for itself (hello only).
     """
@@ -48,7 +49,6 @@ class PageEvent:
     arg: str = ""
     key: str = ""
     numbers: dict[str, float] = field(default_factory=dict)
-    origin: tuple[float, float, float, float] | None = None
     shift: bool = False
     browser: str = ""
 
@@ -79,12 +79,6 @@ def parse_events(text: object, seen: int) -> tuple[list[PageEvent], int]:
             continue
         newest = max(newest, int(number))
         texts = {name: str(item.get(name, ""))[:200] for name in _TEXTS}
-        origin = item.get("from")
-        limits: tuple[float, float, float, float] | None = None
-        if isinstance(origin, list) and len(origin) == 4:
-            numbers = [_finite(value) for value in origin]
-            if all(value is not None for value in numbers):
-                limits = tuple(value for value in numbers if value is not None)  # type: ignore[assignment]
         events.append(
             PageEvent(
                 kind=texts["t"],
@@ -93,7 +87,6 @@ def parse_events(text: object, seen: int) -> tuple[list[PageEvent], int]:
                 arg=texts["arg"],
                 key=texts["key"],
                 numbers={name: value for name in _NUMBERS if (value := _finite(item.get(name))) is not None},
-                origin=limits,
                 shift=item.get("shift") is True,
                 browser=texts["browser"],
             )

@@ -7,6 +7,7 @@ from typing import Any
 import viser
 
 from explorer.bridge import Bridge, PageEvent
+from explorer.guard import guard
 from explorer.state import AppState, Session
 from explorer.views.chart_tabs import chart_tabs
 from explorer.views.charts_view import ChartsView
@@ -19,12 +20,12 @@ from explorer.views.pareto_view import ParetoView
 from explorer.views.run_control import RunControl
 from explorer.views.run_view import RunView
 from explorer.views.scene_view import SceneView
-from explorer.views.settings_view import SEARCH_FIELDS, SettingsView
+from explorer.views.settings_view import SettingsView
 from explorer.views.toolbar_view import ToolbarView
 from explorer.views.whatif_view import WhatIfView
 from hpsop_core.errors import HpsopError
 
-LEFT_WIDTH, RIGHT_WIDTH = 340, 490
+LEFT_WIDTH = 340
 _BRAND = (25, 113, 194)
 
 
@@ -37,11 +38,6 @@ def build_shared(app: AppState, server: viser.ViserServer) -> SettingsView:
     gui.main_panel.set_width(LEFT_WIDTH)
     server.scene.set_up_direction("+z")
 
-    def refuse(client_id: int, text: str) -> None:
-        session = app.sessions.get(client_id)
-        if session is not None:
-            session.notify("Not accepted", text, "red")
-
     def save(event: viser.GuiEvent[Any]) -> None:
         client = event.client
         if client is None:
@@ -49,7 +45,7 @@ def build_shared(app: AppState, server: viser.ViserServer) -> SettingsView:
         try:
             case = app.draft.case()
         except HpsopError as error:
-            refuse(client.client_id, str(error))
+            app.refuse(client.client_id, str(error))
             return
         client.send_file_download(f"{case.name}.toml", case.to_toml().encode(), save_immediately=True)
 
@@ -58,20 +54,22 @@ def build_shared(app: AppState, server: viser.ViserServer) -> SettingsView:
     space = tabs.add_tab("Design space")
     case_tab = tabs.add_tab("Case")
     runs = tabs.add_tab("Runs")
-    settings = SettingsView(app, gui, space, case_tab, refuse, save, SEARCH_FIELDS)
+    settings = SettingsView(app, gui, space, case_tab, save)
     with runs:
         LibraryView(app, gui)
+    guard(gui, app.refuse)
     return settings
 
 
 def build_session(session: Session, client: viser.ClientHandle) -> None:
     """The right dock and the 3D view of one browser."""
     gui = client.gui
+    guard(gui, session.app.refuse)
     with client.atomic():
         top = gui.add_panel()
         pareto = top.add_tab("Pareto front")
         top.dock_right()
-        top.set_width(RIGHT_WIDTH)
+        top.set_width(session.dock_width)
         bottom = gui.add_panel()
         design, charts, compare, whatif = (
             bottom.add_tab(title) for title in ("Design", "Charts", "Compare", "What-if")
@@ -91,20 +89,25 @@ def build_session(session: Session, client: viser.ClientHandle) -> None:
             CompareView(session, gui)
         with whatif:
             WhatIfView(session, gui)
+        with pareto:
+            you = gui.add_html("")
     SceneView(session, client)
     OverlayView(session, client)
 
     def hello(event: PageEvent) -> None:
         _resize(session, event)
+        top.set_width(session.dock_width)
+        app = session.app
         session.browser = event.browser[:64]
-        saved = session.app.memory.get(session.browser)
+        saved = app.memory.get(session.browser)
+        app.greet(session)
+        you.content = f'<style>[data-person="{session.number}"]::after{{content:" (you)"}}</style>'
         if saved is not None:
             session.restore(saved)
         if session.selected is None:
             session.select_initial()
-        gui.configure_theme(
-            show_logo=False, show_share_button=False, brand_color=_BRAND, dark_mode=session.options.dark
-        )
+        app.remember(session)
+        theme()
 
     def theme() -> None:
         gui.configure_theme(
@@ -112,7 +115,14 @@ def build_session(session: Session, client: viser.ClientHandle) -> None:
         )
 
     session.handle("hello", "", hello)
-    session.handle("size", "", lambda event: _resize(session, event))
+
+    def size(event: PageEvent) -> None:
+        before = session.dock_width
+        _resize(session, event)
+        if session.dock_width != before:
+            top.set_width(session.dock_width)
+
+    session.handle("size", "", size)
     session.hub.on(("options",), theme)
     session.worker.latest("first selection", lambda: session.selected or session.select_initial())
 

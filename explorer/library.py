@@ -33,6 +33,7 @@ class LibraryEntry:
         summary: state, generations, evaluations.
         modified: seconds since 1970.
         deletable: nobody writes it.
+        continuable: nobody writes it and it has generations left.
     """
 
     name: str
@@ -40,6 +41,7 @@ class LibraryEntry:
     summary: str
     modified: float
     deletable: bool
+    continuable: bool = False
 
 
 def runs_folder() -> Path:
@@ -98,7 +100,9 @@ class RunLibrary:
             known = self._known.get(path.name)
             if known is None or known[0] != stamp:
                 known = (stamp, _entry(path, modified))
-                self._known[path.name] = known
+                # a writer may end, or be killed, without another word in the file: looked at again until it is gone
+                if known[1].deletable:
+                    self._known[path.name] = known
             found.append(known[1])
         return sorted(found, key=lambda entry: -entry.modified)
 
@@ -131,10 +135,10 @@ def _entry(path: Path, modified: float) -> LibraryEntry:
         reader: RunReader = open_run(path)
         state, _ = reader.state()
         done, evaluations = reader.progress()
-        summary = (
-            f"{_STATES.get(state, state)}, generation {done} of {reader.case.optimization.generations}, "
-            f"{evaluations} evaluations"
-        )
-        return LibraryEntry(path.name, reader.case.title, summary, modified, not is_being_written(path))
+        total = reader.generations_asked()
+        summary = f"{_STATES.get(state, state)}, generation {done} of {total}, {evaluations} evaluations"
+        free = not is_being_written(path)
+        left = state != "failed" and done < total
+        return LibraryEntry(path.name, reader.case.title, summary, modified, free, free and left)
     except HpsopError as error:
         return LibraryEntry(path.name, "not readable", str(error), modified, True)

@@ -106,6 +106,11 @@ class RunKeeper:
         """Whether this program drives it now."""
         return self._controller is not None and self._controller.running
 
+    @property
+    def holds_file(self) -> bool:
+        """Whether this program keeps others from writing the file."""
+        return self._controller is not None
+
     def start(self) -> None:
         """Start or go on.
 
@@ -140,13 +145,17 @@ class RunKeeper:
             self._on_news()
 
     def extend(self, generations: int) -> None:
-        """More generations, and start it again.
+        """More generations; a run that had ended starts again, a paused one stays paused.
 
         Raises:
             InputError: as ``start``.
         """
         with self._guard:
-            self._open_controller().extend(generations)
+            controller = self._open_controller()
+            controller.extend(generations)
+            if controller.running:
+                self._on_news()
+                return
         self.start()
 
     def add_by_hand(self, evaluation: Evaluation) -> int:
@@ -265,7 +274,7 @@ class RunKeeper:
         self._read_new(reader)
         newest = reader.generation()
         snapshot = self._event.snapshot if self._event is not None else None
-        total = snapshot.generations if snapshot is not None and snapshot.generations else _asked(reader)
+        total = snapshot.generations if snapshot is not None and snapshot.generations else reader.generations_asked()
         if total != case.optimization.generations:
             case = case.replaced("optimization", generations=total)
         elapsed = sum(record.elapsed for record in reader.generation_records())
@@ -298,7 +307,9 @@ class RunKeeper:
         if not fresh:
             return
         rows, table = [], []
-        for point in fresh:
+        # one connection for all of them: opening one costs more than reading a design
+        records = reader.designs([point.id for point in fresh])
+        for point, record in zip(fresh, records, strict=True):
             f1, f2 = point.objectives if point.objectives is not None else (np.nan, np.nan)
             rows.append(
                 [
@@ -311,7 +322,7 @@ class RunKeeper:
                     point.origin == "hand",
                 ]
             )
-            evaluation = reader.designs([point.id])[0].evaluation
+            evaluation = record.evaluation
             table.append(
                 [
                     np.nan if (value := quantity.value(evaluation)) is None else float(value)
@@ -350,8 +361,3 @@ class RunKeeper:
             return IDLE, ""
         state, reason = reader.state()
         return _STATES.get(state, state), reason
-
-
-def _asked(reader: RunReader) -> int:
-    """Generations asked for, extensions included."""
-    return int(reader.summary()["generations"])

@@ -1,18 +1,18 @@
 """A viser server that only its own user can drive.
 
 viser 1.1.1 by default binds every interface, accepts any Origin (so any web page the user has open could press our
-buttons), hands out public share tunnels to whoever asks, and silently takes the next port when one is busy. Here the
-port is chosen and known before the server starts, foreign Origins are refused by the WebSocket handshake, and the share
-tunnel is off.
+buttons), may be framed by any page (so a page could lay itself over our buttons and steal the clicks), hands out public
+share tunnels to whoever asks, and silently takes the next port when one is busy. Here the port is chosen and known
+before the server starts, foreign Origins are refused by the WebSocket handshake, no other page may frame this one, and
+the share tunnel is off. What a browser that was let in may say is explorer/guard.py's matter.
 
-This leans on one private fact of viser 1.1.1: it reads ``websockets.asyncio.server.serve`` at start. The version is
-pinned and tests/browser/test_security.py fails when that fact changes.
+This leans on private facts of viser 1.1.1: it reads ``websockets.asyncio.server.serve`` at start and passes it
+``process_request``. The version is pinned and tests/faults/test_page_guard.py fails when these facts change.
 """
 
 from __future__ import annotations
 
 import contextlib
-import functools
 import io
 import ipaddress
 import socket
@@ -21,6 +21,7 @@ from typing import Any
 
 import viser
 import websockets.asyncio.server as websocket_server
+from viser import _messages
 
 from hpsop_core.errors import InputError
 
@@ -76,7 +77,13 @@ def secure_server(host: str, port: int, label: str, origins: Sequence[str] | Non
     """Start viser on exactly this host and port, open to these Origins only, without share tunnels."""
     accepted = list(allowed_origins(host, port) if origins is None else origins)
     serve = websocket_server.serve
-    websocket_server.serve = functools.partial(serve, origins=accepted)  # type: ignore[assignment]
+
+    def guarded_serve(*arguments: Any, **settings: Any) -> Any:
+        settings["origins"] = accepted
+        settings["process_request"] = _unframed(settings.get("process_request"))
+        return serve(*arguments, **settings)
+
+    websocket_server.serve = guarded_serve  # type: ignore[assignment]
     try:
         # viser prints a banner of its own; the address is ours to print, once.
         with contextlib.redirect_stdout(io.StringIO()):
@@ -87,7 +94,24 @@ def secure_server(host: str, port: int, label: str, origins: Sequence[str] | Non
         server.stop()
         raise InputError(f"--port {port}: taken by another program a moment ago; start again")
     server.request_share_url = _refuse_share  # type: ignore[method-assign]
+    for kind in (_messages.ShareUrlRequest, _messages.ShareUrlDisconnect):
+        server._websock_server.unregister_handler(kind)
     return server
+
+
+def _unframed(answer: Any) -> Any:
+    """The same HTTP answers, with the headers that forbid other pages to frame them."""
+    if answer is None:
+        return None
+
+    def framed_by_nobody(connection: Any, request: Any) -> Any:
+        response = answer(connection, request)
+        if response is not None:
+            response.headers["Content-Security-Policy"] = "frame-ancestors 'none'"
+            response.headers["X-Content-Type-Options"] = "nosniff"
+        return response
+
+    return framed_by_nobody
 
 
 def _refuse_share(*_args: Any, **_kwargs: Any) -> None:

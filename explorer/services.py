@@ -14,7 +14,7 @@ from explorer.draft import Draft
 from explorer.library import LibraryEntry, RunLibrary
 from explorer.physics import Physics, Remembered
 from explorer.run_keeper import RunKeeper
-from explorer.run_picture import ACTIVE, FAILED, IDLE, RunPicture
+from explorer.run_picture import ACTIVE, FAILED, IDLE, STARTING, STOPPING, RunPicture
 from explorer.scene.blades import blade_pressure
 from explorer.scene.geometry import SceneGeometry, ghost_segments, scene_geometry
 from explorer.scene.pressure import PressureMap, hull_pressure
@@ -54,6 +54,7 @@ class Services:
         self.asked_to_delete = ""
         self._pictures = LatestWorker("pictures")
         self._refreshed = 0.0
+        self._standing: tuple[object, ...] = ()
 
     def attach(self, app: AppState) -> None:
         """Tell this state what changes."""
@@ -155,7 +156,10 @@ class Services:
         keeper = self._keeper
         if keeper is None:
             raise InputError("there is no run yet; press Start first")
-        return keeper.add_by_hand(evaluation)
+        design_id = keeper.add_by_hand(evaluation)
+        if self._app is not None:
+            self._app.show_run(keeper.picture())
+        return design_id
 
     def can_add_by_hand(self) -> bool:
         """Whether the run on display can keep a hand-made design."""
@@ -201,6 +205,15 @@ class Services:
             raise InputError(f"{name[:60]}: no such run in the folder")
         self.open(path)
 
+    def continue_named(self, name: str) -> None:
+        """Show a run of the library and go on with it.
+
+        Raises:
+            InputError: there is none of that name, or it cannot be driven.
+        """
+        self.open_named(name)
+        self.control("continue")
+
     def _show(self, keeper: RunKeeper) -> None:
         old, self._keeper = self._keeper, keeper
         if old is not None:
@@ -222,10 +235,12 @@ class Services:
         keeper, app = self._keeper, self._app
         if keeper is None or app is None:
             return
-        before = app.picture.status
         picture = keeper.picture()
         app.show_run(picture)
-        if picture.status != before:
+        # the library says what may be deleted and continued: that changes too when the file is given back
+        standing = (picture.name, picture.status, keeper.holds_file)
+        if standing != self._standing:
+            self._standing = standing
             app.tell_all("library")
 
     def draft_changed(self) -> None:
@@ -300,13 +315,13 @@ class Services:
         return picture.status not in ACTIVE and len(picture.generations) < picture.total_generations
 
     def can_extend(self) -> bool:
-        """Whether the run on display is complete and can be driven further."""
+        """Whether the run on display can be asked for more generations."""
         keeper, app = self._keeper, self._app
         return (
             keeper is not None
             and app is not None
             and keeper.writable
-            and app.picture.status not in (*ACTIVE, FAILED, IDLE)
+            and app.picture.status not in (STARTING, STOPPING, FAILED, IDLE)
         )
 
     def part_of_generation(self) -> float:

@@ -48,6 +48,11 @@ class Shown:
         """Two shown designs of equal keys have the same geometry and curves."""
         return (self.evaluation.level, *self.evaluation.variables.key())
 
+    @property
+    def name(self) -> str:
+        """The key as text."""
+        return " ".join(str(part) for part in self.key)
+
 
 class Hub:
     """Who wants to know of which topic."""
@@ -77,7 +82,7 @@ class Hub:
 class ViewOptions:
     """What of the design is drawn in 3D; belongs to a browser.
 
-    ``ghost_of`` is "initial" or the place of a pin, "0" to "3"; a pin that is gone means the initial design.
+    ``ghost_of`` is "initial" or the ``name`` of a pinned design; a pin that is gone means the initial design.
     """
 
     ghost: bool = False
@@ -97,6 +102,8 @@ class Session:
 
     Attributes:
         app: the shared state.
+        browser: the browser's own name for itself, "" until it has said so.
+        number: by which the other browsers know it, from 1; 0 until it has said who it is.
         selected: the design on display, or None before the first.
         pins: designs kept side by side, at most four.
         scrubbed: the generation looked at, or None to follow the run.
@@ -114,6 +121,7 @@ class Session:
         self.client_id = client_id
         self.notify = notify
         self.browser = ""
+        self.number = 0
         self.selected: Shown | None = None
         self.pins: tuple[Shown, ...] = ()
         self.scrubbed: int | None = None
@@ -140,6 +148,16 @@ class Session:
     def picture(self) -> RunPicture:
         """The run as it is now."""
         return self.app.picture
+
+    @property
+    def dock_width(self) -> int:
+        """Of the right dock in px: a large screen gives its charts more room, a small one keeps the 3D view usable."""
+        return min(max(490, round(0.31 * self.size[0])), 620)
+
+    @property
+    def chart_width(self) -> float:
+        """Of a chart that fills the right dock, px."""
+        return self.dock_width - 24.0
 
     def on_close(self, closer: Callable[[], None]) -> None:
         """Call when the browser leaves."""
@@ -250,6 +268,7 @@ class Session:
             }
 
         return {
+            "number": self.number,
             "run": self.picture.name,
             "selected": design(self.selected) if self.selected else None,
             "pins": [design(item) for item in self.pins],
@@ -280,9 +299,9 @@ class Session:
         if saved.get("run") == self.picture.name:
             scrubbed = saved.get("scrubbed")
             self.scrubbed = scrubbed if isinstance(scrubbed, int) and not isinstance(scrubbed, bool) else None
-            self.pins = tuple(
-                shown for item in saved.get("pins", [])[:MOST_PINS] if (shown := self._again(item)) is not None
-            )
+            pins = saved.get("pins")
+            again = [self._again(item) for item in pins[:MOST_PINS]] if isinstance(pins, list) else []
+            self.pins = tuple(shown for shown in again if shown is not None)
             selected = self._again(saved.get("selected"))
             if selected is not None:
                 self.selected = selected
@@ -297,9 +316,9 @@ class Session:
             return self.app.initial_shown(item["level"] if item.get("level") in (1, 2) else 1)
         try:
             variables = DesignVariables.from_dict(item.get("variables") or {})
-        except HpsopError:
+            return self.app.whatif(variables, item["level"] if item.get("level") in (1, 2) else 1)
+        except (HpsopError, TypeError, AttributeError):
             return None
-        return self.app.whatif(variables)
 
 
 @dataclass
@@ -313,6 +332,8 @@ class AppState:
         picture: the run on display.
         sessions: by client id.
         services: what answers for runs and physics (explorer/services.py).
+        memory: what a reload brings back, by the browser's own name; the latest is the last.
+        doings: who did what to the run last, for people.
     """
 
     draft: Draft
@@ -324,6 +345,27 @@ class AppState:
     memory: dict[str, dict[str, Any]] = field(default_factory=dict)
     lock: threading.RLock = field(default_factory=threading.RLock)
     on_remember: Callable[[], None] | None = None
+    doings: str = ""
+
+    def greet(self, session: Session) -> None:
+        """Give a browser the number it had before, or the least that is free."""
+        with self.lock:
+            taken = {other.number for other in self.sessions.values() if other is not session}
+            had = self.memory.get(session.browser, {}).get("number")
+            if isinstance(had, int) and had > 0 and had not in taken:
+                session.number = had
+            else:
+                session.number = next(number for number in range(1, len(taken) + 2) if number not in taken)
+        self.hub.changed("people")
+
+    def did(self, session: Session, what: str) -> None:
+        """Tell everybody else what this browser did to the run or the settings that all share."""
+        with self.lock:
+            others = [other for other in self.sessions.values() if other is not session]
+        self.doings = f"browser {session.number} {what}" if others else ""
+        for other in others:
+            other.notify(f"Browser {session.number}", what, "blue")
+        self.hub.changed("run")
 
     def remember(self, session: Session) -> None:
         """Keep what a reload of this browser brings back."""
@@ -354,6 +396,12 @@ class AppState:
                 session.hub.changed("run", "selection", "scrub", "filter", "pins")
             else:
                 session.hub.changed("run")
+
+    def refuse(self, client_id: int, text: str) -> None:
+        """Tell a browser that what it sent was not accepted."""
+        session = self.sessions.get(client_id)
+        if session is not None:
+            session.notify("Not accepted", text, "red")
 
     def tell_all(self, topic: str) -> None:
         """A shared topic that every browser's own views may want too."""

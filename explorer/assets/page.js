@@ -30,6 +30,7 @@
     const field = input();
     if (!field) { timer = setTimeout(flush, 100); return; }
     dirty = false;
+    H.sent = sequence;
     const prototype = field.tagName === "TEXTAREA" ? HTMLTextAreaElement.prototype : HTMLInputElement.prototype;
     Object.getOwnPropertyDescriptor(prototype, "value").set.call(field, JSON.stringify(H.outbox));
     field.dispatchEvent(new Event("input", { bubbles: true }));
@@ -72,13 +73,15 @@
   document.body.appendChild(band);
   disposers.push(() => band.remove());
   let drag = null;
+  let drags = 0;
+  let clicked = null;
   listen(document, "pointerdown", (event) => {
     const svg = chartOf(event.target);
     H.active = svg ? svg.dataset.chart : null;
     if (!svg || event.button !== 0) return;
     const p = point(svg, event);
     const mode = event.shiftKey && svg.dataset.box ? "box" : svg.dataset.drag || "none";
-    drag = { chart: svg.dataset.chart, mode, x: event.clientX, y: event.clientY, last: p, start: p, moved: false, box: svg.getBoundingClientRect(), plot: svg.dataset.plot, limits: svg.dataset.limits };
+    drag = { number: ++drags, chart: svg.dataset.chart, mode, x: event.clientX, y: event.clientY, start: p, moved: false };
     if (mode !== "none") event.preventDefault();
   }, true);
   let hovered = null;
@@ -89,8 +92,9 @@
       if (!svg || !drag.moved) return;
       const p = point(svg, event);
       if (drag.mode === "pan") {
-        // fractions of the plot do not change while it is redrawn with other limits
-        H.send({ t: "pan", chart: drag.chart, fx: p.fx - drag.start.fx, fy: p.fy - drag.start.fy, from: drag.limits.split(",").map(Number), soft: 1 });
+        // Fractions of the plot do not change while it is redrawn with other limits; where the drag began from, Python
+        // knows better than a chart that may not have been redrawn yet.
+        H.send({ t: "pan", chart: drag.chart, fx: p.fx - drag.start.fx, fy: p.fy - drag.start.fy, drag: drag.number, soft: 1 });
         hideTip();
       } else if (drag.mode === "box" || drag.mode === "brush") {
         const wide = drag.mode === "brush";
@@ -125,8 +129,13 @@
     if (done.moved && done.mode !== "none") {
       if (done.mode === "box" || done.mode === "brush")
         H.send({ t: done.mode, chart: done.chart, x0: done.start.x, y0: done.start.y, x1: p.x, y1: p.y, fx0: done.start.fx, fy0: done.start.fy, fx1: p.fx, fy1: p.fy });
-    } else if (svg.dataset.click && event.button === 0) {
-      H.send({ t: "click", chart: done.chart, x: p.x, y: p.y, fx: p.fx, fy: p.fy, shift: event.shiftKey, twice: event.detail > 1 });
+    } else if (event.button === 0) {
+      // The browser's own dblclick is lost when the first click redraws the chart under the pointer.
+      const near = clicked && clicked.chart === done.chart && event.timeStamp - clicked.at < 350 &&
+        Math.abs(event.clientX - clicked.x) + Math.abs(event.clientY - clicked.y) < 6;
+      clicked = near ? null : { chart: done.chart, at: event.timeStamp, x: event.clientX, y: event.clientY };
+      if (near && svg.dataset.drag) H.send({ t: "reset", chart: done.chart });
+      else if (svg.dataset.click) H.send({ t: "click", chart: done.chart, x: p.x, y: p.y, fx: p.fx, fy: p.fy });
     }
   }, true);
   // A button may be redrawn between press and release, and the browser then drops its click: what was pressed and what
@@ -150,10 +159,6 @@
     // detail 0: pressed with the keyboard or by a screen reader
     if (event.detail === 0) act(buttonOf(event.target), event.shiftKey);
   }, true);
-  listen(document, "dblclick", (event) => {
-    const svg = chartOf(event.target);
-    if (svg && svg.dataset.drag) H.send({ t: "reset", chart: svg.dataset.chart });
-  }, true);
   listen(document, "wheel", (event) => {
     const svg = chartOf(event.target);
     if (!svg || svg.dataset.drag !== "pan") return;
@@ -162,7 +167,12 @@
     event.preventDefault();
     event.stopPropagation();
     hideTip();
-    H.send({ t: "zoom", chart: svg.dataset.chart, x: p.x, y: p.y, factor: Math.exp(Math.max(-1, Math.min(1, event.deltaY / 400))) });
+    // a trackpad turns the wheel faster than messages go: what still waits is turned further
+    const factor = Math.exp(Math.max(-1, Math.min(1, event.deltaY / 400)));
+    const last = H.outbox[H.outbox.length - 1];
+    if (last && last.t === "zoom" && last.chart === svg.dataset.chart && last.n > H.sent)
+      last.factor = Math.max(0.25, Math.min(4, last.factor * factor));
+    else H.send({ t: "zoom", chart: svg.dataset.chart, fx: p.fx, fy: p.fy, factor });
   }, { capture: true, passive: false });
   listen(document, "keydown", (event) => {
     const target = event.target;

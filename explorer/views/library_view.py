@@ -18,7 +18,6 @@ class LibraryView:
     def __init__(self, app: AppState, gui: viser.GuiApi) -> None:
         self._app = app
         self._html = Slot(gui)
-        self._asked = ""
         app.hub.on(("library",), self.draw)
         self.draw()
 
@@ -38,6 +37,10 @@ class LibraryView:
             else:
                 buttons = chips(
                     chip("open_run", "shown" if current else "open", entry.name, on=current),
+                    chip("continue_run", "continue", entry.name, hint="open it and go on with it")
+                    if entry.continuable and not current
+                    else "",
+                    chip("adopt", "use its settings", hint="set up the next run like this one") if current else "",
                     chip("delete_run", "delete …", entry.name, disabled=not entry.deletable),
                 )
             rows.append(

@@ -25,7 +25,6 @@ from explorer.views.chips import box, chip, chips
 from explorer.views.slot import Slot
 from explorer.views.tables import design_card
 
-_WIDTH = 470.0
 _FRAME = (68.0, 42.0)  # px of the margins, both sides together
 _STEP_SECONDS = 0.25
 
@@ -37,6 +36,7 @@ class ParetoView:
         self._session = session
         self._serial = 0
         self._drawn_limits = ((0.0, 1.0), (0.0, 1.0))
+        self._panned: tuple[float, tuple[tuple[float, float], tuple[float, float]]] | None = None
         self._playing = threading.Event()
         self._hovered: tuple[int, ...] = ()
         self._chart = gui.add_html("")
@@ -103,7 +103,7 @@ class ParetoView:
         self._drawn_limits = options.limits or automatic_limits(picture, options)
         objectives = picture.case.objectives
         titles = (objective_title(objectives.first, "f₁"), objective_title(objectives.second, "f₂"))
-        svg = pareto_chart(picture, options, self._marks(), titles, _WIDTH, self._height())
+        svg = pareto_chart(picture, options, self._marks(), titles, self._session.chart_width, self._height())
         keys = [("circle", "level1", "level 1 front")]
         if picture.last_of_level(2) is not None:
             keys.append(("circle", "level2", "level 2 front"))
@@ -173,7 +173,7 @@ class ParetoView:
         x, y = event.numbers.get("x"), event.numbers.get("y")
         if x is None or y is None:
             return []
-        size = (_WIDTH - _FRAME[0], self._height() - _FRAME[1])
+        size = (self._session.chart_width - _FRAME[0], self._height() - _FRAME[1])
         return pick(self._session.picture, self._options(), x, y, self._drawn_limits, size)
 
     def _click(self, event: PageEvent) -> None:
@@ -193,7 +193,7 @@ class ParetoView:
         if x is None or y is None:
             return
         (x0, x1), (y0, y1) = self._drawn_limits
-        width, height = _WIDTH - _FRAME[0], self._height() - _FRAME[1]
+        width, height = self._session.chart_width - _FRAME[0], self._height() - _FRAME[1]
         initial = self._session.app.initial_shown(self._session.picture.current_level)
         if initial is None:
             return
@@ -223,20 +223,24 @@ class ParetoView:
         self._tip.content = tooltip("pareto", design_card(shown) + more, self._serial)
 
     def _zoom(self, event: PageEvent) -> None:
-        x, y, factor = (event.numbers.get(name) for name in ("x", "y", "factor"))
-        if x is None or y is None or factor is None or not 0.2 < factor < 5.0:
+        fx, fy, factor = (event.numbers.get(name) for name in ("fx", "fy", "factor"))
+        if fx is None or fy is None or factor is None or not 0.2 < factor < 5.0:
             return
+        # what stays in place is a fraction of the plot: several turns of the wheel may come before it is redrawn
         (x0, x1), (y0, y1) = self._drawn_limits
+        x, y = x0 + fx * (x1 - x0), y0 + fy * (y1 - y0)
         limits = ((x + (x0 - x) * factor, x + (x1 - x) * factor), (y + (y0 - y) * factor, y + (y1 - y) * factor))
         if all(1e-6 < high - low < 1e3 for low, high in limits):
             self._drawn_limits = limits
             self._session.zoom("pareto", limits)
 
     def _pan(self, event: PageEvent) -> None:
-        fx, fy = event.numbers.get("fx"), event.numbers.get("fy")
-        if fx is None or fy is None or event.origin is None:
+        fx, fy, drag = (event.numbers.get(name) for name in ("fx", "fy", "drag"))
+        if fx is None or fy is None or drag is None or not max(abs(fx), abs(fy)) < 100.0:
             return
-        x0, x1, y0, y1 = event.origin
+        if self._panned is None or self._panned[0] != drag:
+            self._panned = (drag, self._drawn_limits)
+        (x0, x1), (y0, y1) = self._panned[1]
         dx, dy = fx * (x1 - x0), fy * (y1 - y0)
         self._session.zoom("pareto", ((x0 - dx, x1 - dx), (y0 - dy, y1 - dy)))
 

@@ -23,6 +23,9 @@ _WORDS = {
 }
 
 
+_EXTENSIONS = (10, 25, 100)
+
+
 class RunView:
     """Status, buttons, progress bar and figures."""
 
@@ -41,8 +44,11 @@ class RunView:
         status = picture.status
         driven = picture.live
         active = status in ACTIVE and driven
-        watching = len(self._app.sessions)
-        people = f"{watching} watching" if watching != 1 else ""
+        numbers = sorted(session.number for session in list(self._app.sessions.values()) if session.number)
+        people = ""
+        if len(numbers) > 1:
+            names = ", ".join(f'<span data-person="{number}">browser {number}</span>' for number in numbers)
+            people = f'<p class="soft">{len(numbers)} watching: {names}</p>'
         word = _WORDS.get(status, status)
         if status in ACTIVE and not driven:
             word = "Running elsewhere" if status != PAUSED else "Paused elsewhere"
@@ -56,8 +62,15 @@ class RunView:
             ]
         elif picture.name and services.can_continue():
             buttons.append(chip("run_continue", "▶▶ Continue", css="big", hint="go on with this run"))
-        elif picture.name and services.can_extend():
-            buttons.append(chip("run_extend", "+ 25 generations", "25", css="big", hint="extend this run"))
+        more = ""
+        if picture.name and services.can_extend():
+            more = chips(
+                '<span class="soft">extend by</span>',
+                *(
+                    chip("run_extend", f"+{count}", str(count), hint=f"{count} more generations")
+                    for count in _EXTENSIONS
+                ),
+            )
         message = (
             f'<p class="{"bad" if status == FAILED else "soft"}">{escape(picture.message)}</p>'
             if (picture.message)
@@ -67,12 +80,12 @@ class RunView:
         self._status.show(
             box(
                 f'<div class="status" data-run-status="{status}" data-generation="{len(picture.generations)}">'
-                f'<b class="state-{status}">{word}</b> {name}<span class="gap"></span>'
-                f'<span class="soft">{people}</span></div>'
+                f'<b class="state-{status}">{word}</b> {name}<span class="gap"></span></div>'
             )
         )
-        self._buttons.show(box(chips(*buttons)))
-        self._facts_slot.show(box(f"{message}{self._facts()}"))
+        self._buttons.show(box(chips(*buttons) + more))
+        doings = f'<p class="soft">{escape(self._app.doings)}</p>' if self._app.doings and people else ""
+        self._facts_slot.show(box(f"{message}{self._facts()}{people}{doings}"))
         total = max(picture.total_generations, 1)
         self._bar.value = min(100.0, 100.0 * (len(picture.generations) + services.part_of_generation()) / total)
         self._bar.visible = bool(picture.generations) or active

@@ -2,8 +2,10 @@
 
 from __future__ import annotations
 
+import itertools
 import math
-from collections.abc import Callable, Sequence
+import threading
+from collections.abc import Callable
 from typing import Any
 
 import viser
@@ -12,75 +14,15 @@ from explorer.charts.plot import escape
 from explorer.draft import numbers_from_text
 from explorer.quantities import VARIABLES, Quantity, number_text
 from explorer.state import AppState
-from explorer.views.chips import box
+from explorer.views.chips import box, chip, chips
+from explorer.views.settings_fields import CASE_FIELDS, OPEN_FOLDERS, SEARCH_FIELDS, SLIDER_RANGES, STEPS
 from hpsop_core.case import SHIPPED_CASES, load_case
 from hpsop_core.case_fields import checked_value, rules
 from hpsop_core.design import VARIABLE_RULES
 from hpsop_core.errors import InputError
 
-# How far the sliders reach: wider than the paper's Table 2, narrower than what the parents' families carry.
-_SLIDER_RANGES: dict[str, tuple[float, float, float]] = {
-    "length_to_breadth": (6.0, 9.0, 0.01),
-    "breadth_to_draft": (2.6, 4.8, 0.01),
-    "draft": (12.0, 16.0, 0.01),
-    "diameter": (7.5, 10.5, 0.01),
-    "blade_count": (3, 7, 1),
-    "pitch_ratio": (0.8, 1.2, 0.001),
-    "displacement_ratio": (0.85, 1.15, 0.001),
-    "expanded_area_ratio": (0.4, 1.05, 0.001),
-    "buoyancy_centre_shift": (-0.02, 0.02, 0.0005),
-}
-_FIELDS: tuple[tuple[str, tuple[tuple[str, str, str], ...]], ...] = (
-    (
-        "Operating conditions",
-        (
-            ("conditions", "froude_numbers", "Froude numbers"),
-            ("conditions", "weights", "Weights"),
-            ("conditions", "speed", "Speed"),
-        ),
-    ),
-    (
-        "Form and objectives",
-        (
-            ("hull", "form", "Hull form"),
-            ("objectives", "first", "Objective f₁"),
-            ("objectives", "second", "Objective f₂"),
-        ),
-    ),
-    (
-        "Constraints",
-        (
-            ("constraints", "displacement_tolerance", "g₁ tolerance"),
-            ("constraints", "diameter_to_draft_lower", "g₂ D/d from"),
-            ("constraints", "diameter_to_draft_upper", "g₂ D/d to"),
-            ("constraints", "g3_level", "g₃ from level"),
-            ("constraints", "keller_k", "Keller's K"),
-        ),
-    ),
-    (
-        "Physics",
-        (
-            ("constants", "form_factor", "Form factor k"),
-            ("constants", "wave_calibration", "Calibration"),
-            ("constants", "wake_formula", "Wake"),
-        ),
-    ),
-    (
-        "Search",
-        (
-            ("optimization", "crossover_probability", "Crossover"),
-            ("optimization", "mutation_probability", "Mutation"),
-            ("optimization", "constraint_handling", "Constraints"),
-            ("optimization", "reseed_share", "Re-seeded"),
-        ),
-    ),
-)
-SEARCH_FIELDS: tuple[tuple[str, str, str], ...] = (
-    ("optimization", "population", "Population"),
-    ("optimization", "generations", "Generations"),
-    ("optimization", "level1_generations", "of these level 1"),
-    ("optimization", "seed", "Seed"),
-)
+# A field is typed digit by digit; what cannot be taken is refused when the typing has rested so long.
+_TYPING_SECONDS = 1.5
 
 
 class SettingsView:
@@ -92,13 +34,12 @@ class SettingsView:
         gui: viser.GuiApi,
         space: Any,
         case: Any,
-        refuse: Callable[[int, str], None],
         save: Callable[[viser.GuiEvent[Any]], None],
-        search: Sequence[tuple[str, str, str]],
     ) -> None:
         self._app = app
         self._gui = gui
-        self._refuse = refuse
+        self._typing: dict[tuple[str, str], int] = {}
+        self._serial = itertools.count(1)
         self._readouts: dict[str, viser.GuiHtmlHandle] = {}
         self._sliders: dict[str, Any] = {}
         self._widgets: dict[tuple[str, str], Any] = {}
@@ -106,7 +47,7 @@ class SettingsView:
         with space:
             self._preset = gui.add_dropdown("Case", self._preset_names(), initial_value=app.draft.base.name)
             self._about = gui.add_html("")
-            for section, name, label in search:
+            for section, name, label in SEARCH_FIELDS:
                 self.add_field(section, name, label)
             self._workers = gui.add_number(
                 "Workers",
@@ -120,8 +61,9 @@ class SettingsView:
                 self._add_slider(quantity)
             self._reset = gui.add_button("Reset changes to the preset", color="gray")
         with case:
-            for title, fields in _FIELDS:
-                with gui.add_folder(title, expand_by_default=title in ("Operating conditions", "Form and objectives")):
+            self._trouble = gui.add_html("")
+            for title, fields in CASE_FIELDS:
+                with gui.add_folder(title, expand_by_default=title in OPEN_FOLDERS):
                     for section, name, label in fields:
                         self.add_field(section, name, label)
             self._save = gui.add_button("Save this case as TOML")
@@ -130,6 +72,7 @@ class SettingsView:
         self._reset.on_click(self._on_reset)
         self._save.on_click(save)
         app.hub.on(("draft",), self.draw)
+        app.hub.on(("settings",), self.show_all)
         self.draw()
 
     def _preset_names(self) -> list[str]:
@@ -139,7 +82,7 @@ class SettingsView:
     # ---- bounds ----------------------------------------------------------------------------------------------------
     def _add_slider(self, quantity: Quantity) -> None:
         low, high = self._app.draft.base.bounds.as_dict()[quantity.key]
-        least, most, step = _SLIDER_RANGES[quantity.key]
+        least, most, step = SLIDER_RANGES[quantity.key]
         rule = VARIABLE_RULES[quantity.key]
         least, most = max(min(least, low), rule.lower), min(max(most, high), rule.upper)
         kind = int if rule.kind == "integer" else float
@@ -160,10 +103,14 @@ class SettingsView:
         try:
             self.set_bounds(key, event.target.value)
         except InputError as error:
-            self._refuse(event.client_id or 0, str(error))
-            # what was refused must not stay on the screen
-            self._sliders[key].value = tuple(self._typed(key, value) for value in self._app.draft.value("bounds", key))
+            self._app.refuse(event.client_id or 0, str(error))
+            self._show_bounds(key)
             self._app.hub.changed("draft")
+
+    def _show_bounds(self, key: str) -> None:
+        slider, (low, high) = self._sliders[key], self._app.draft.value("bounds", key)
+        slider.min, slider.max = min(slider.min, low), max(slider.max, high)
+        slider.value = (self._typed(key, low), self._typed(key, high))
 
     def set_bounds(self, key: str, value: Any) -> None:
         """New bounds of a variable from anything a browser may send.
@@ -180,7 +127,8 @@ class SettingsView:
             )
         ):
             raise InputError(f"bounds: {key} needs two finite numbers; drag the slider's thumbs")
-        low, high = (float(item) for item in value)
+        # a browser's slider counts in steps from its end: 6.8500000000000005
+        low, high = (round(float(item), 10) for item in value)
         if low > high:
             raise InputError(f"bounds: {key} has reversed bounds {low:g} > {high:g}; give the smaller one first")
         if low < slider.min - 1e-9 or high > slider.max + 1e-9:
@@ -211,20 +159,40 @@ class SettingsView:
         elif rule.kind == "integer":
             widget = self._gui.add_number(label, value, min=int(rule.lower), max=int(rule.upper), step=1, hint=hint)
         else:
-            widget = self._gui.add_number(label, value, min=rule.lower, max=rule.upper, step=0.001, hint=hint)
+            step = STEPS.get(name, 0.001)
+            widget = self._gui.add_number(label, value, min=rule.lower, max=rule.upper, step=step, hint=hint)
         self._widgets[(section, name)] = widget
         self._labels[(section, name)] = label
 
         def update(event: viser.GuiEvent[Any]) -> None:
             if event.client_id is None:
                 return
-            try:
-                self.set_field(section, name, event.target.value)
-            except InputError as error:
-                self._refuse(event.client_id, str(error))
-                self._show_field(section, name)
+            self._on_field(section, name, event.target.value, event.client_id)
 
         widget.on_update(update)
+
+    def _on_field(self, section: str, name: str, value: Any, client_id: int) -> None:
+        serial = self._typing[(section, name)] = next(self._serial)
+        try:
+            self.set_field(section, name, value)
+        except InputError as error:
+            # "1" on the way to "120" is no mistake yet; until the typing rests, Start is refused with this reason.
+            why = str(error)
+            with self._app.lock:
+                self._app.draft.hold(section, name, why)
+            self._app.tell_all("draft")
+            timer = threading.Timer(_TYPING_SECONDS, self._rested, (section, name, serial, why, client_id))
+            timer.daemon = True
+            timer.start()
+
+    def _rested(self, section: str, name: str, serial: int, why: str, client_id: int) -> None:
+        if self._typing.get((section, name)) != serial:
+            return
+        with self._app.lock:
+            self._app.draft.release(section, name)
+        self._app.refuse(client_id, why)
+        self._show_field(section, name)
+        self._app.tell_all("draft")
 
     def set_field(self, section: str, name: str, value: Any) -> None:
         """A new value of a field from anything a browser may send.
@@ -258,14 +226,13 @@ class SettingsView:
             return
         name = event.target.value
         if name not in self._preset_names():
-            self._refuse(event.client_id, f"case: {str(name)[:40]!r} is no option")
+            self._app.refuse(event.client_id, f"case: {str(name)[:40]!r} is no option")
             self._preset.value = self._app.draft.base.name
             return
         if name in SHIPPED_CASES:
             with self._app.lock:
-                self._app.draft.base = load_case(name)
-                self._app.draft.reset_all()
-            self._show_all()
+                self._app.draft.begin(load_case(name))
+            self.show_all()
             self._app.tell_all("draft")
 
     def _on_workers(self, event: viser.GuiEvent[Any]) -> None:
@@ -274,22 +241,31 @@ class SettingsView:
         try:
             self._app.services.set_workers(event.target.value)
         except InputError as error:
-            self._refuse(event.client_id, str(error))
+            self._app.refuse(event.client_id, str(error))
             self._workers.value = self._app.services.workers
 
     def _on_reset(self, _event: viser.GuiEvent[Any]) -> None:
         with self._app.lock:
             self._app.draft.reset_all()
-        self._show_all()
+        self.show_all()
         self._app.tell_all("draft")
 
-    def _show_all(self) -> None:
-        for key, slider in self._sliders.items():
-            low, high = self._app.draft.value("bounds", key)
-            slider.min, slider.max = min(slider.min, low), max(slider.max, high)
-            slider.value = (self._typed(key, low), self._typed(key, high))
-        for section, name in self._widgets:
-            self._show_field(section, name)
+    def show_all(self) -> None:
+        """Bring every widget to the draft, which was changed as a whole (a preset, a reset, another run's case)."""
+        name, names = self._app.draft.base.name, self._preset_names()
+        if tuple(self._preset.options) != tuple(names):
+            self._preset.options = names
+        self._preset.value = name
+        for key in self._sliders:
+            self._show_bounds(key)
+        for section, field in self._widgets:
+            self._show_field(section, field)
+        self.draw()
+
+    def _title(self, section: str, name: str) -> str:
+        if section == "bounds":
+            return next(quantity.symbol for quantity in VARIABLES if quantity.key == name)
+        return self._labels.get((section, name), name)
 
     # ---- drawing ---------------------------------------------------------------------------------------------------
     def draw(self) -> None:
@@ -302,10 +278,18 @@ class SettingsView:
         except InputError as error:
             trouble = f'<p class="bad">{escape(str(error))}</p>'
         count = draft.count()
-        changed = f'<p class="soft">{count} setting{"s" if count != 1 else ""} changed (●)</p>' if count else ""
+        changed = ""
+        if count:
+            words = "".join(
+                chip("reset_field", f"{self._title(section, name)} ✕", f"{section}.{name}", hint="back to the preset's")
+                for section, fields in draft.changes.items()
+                for name in fields
+            )
+            changed = f'<p class="soft">Changed (●):</p>{chips(words)}'
         self._about.content = box(
             f"<p><b>{escape(draft.base.title)}</b></p><p class='soft'>{lines}</p>{changed}{trouble}"
         )
+        self._trouble.content = box(trouble) if trouble else ""
         self._reset.visible = count > 0
         for (section, name), widget in self._widgets.items():
             label = self._labels[(section, name)] + (" ●" if draft.changed(section, name) else "")
@@ -325,4 +309,4 @@ class SettingsView:
 
 
 def _list_text(values: tuple[float, ...]) -> str:
-    return ", ".join(f"{value:g}" for value in values)
+    return ", ".join(f"{value:.12g}" for value in values)

@@ -37,6 +37,7 @@ _REACH = {
     "expanded_area_ratio": (0.35, 1.1),
     "buoyancy_centre_shift": (-0.025, 0.025),
 }
+_LEVEL2 = "Evaluate at level 2"
 
 
 class WhatIfView:
@@ -45,6 +46,7 @@ class WhatIfView:
     def __init__(self, session: Session, gui: viser.GuiApi) -> None:
         self._session = session
         self._answered: list[float] = []
+        self._own: Shown | None = None
         self._html = gui.add_html("")
         self._sliders: dict[str, Any] = {}
         for quantity in VARIABLES:
@@ -57,12 +59,12 @@ class WhatIfView:
             )
             slider.on_update(self._moved)
             self._sliders[quantity.key] = slider
-        self._level2 = gui.add_button("Evaluate at level 2", hint="Rankine panels and blade panels, about a second")
+        self._level2 = gui.add_button(_LEVEL2, hint="Rankine panels and blade panels, about a second")
         self._add = gui.add_button("Add to the run's archive as a hand-made design", color="gray")
         self._level2.on_click(self._on_level2)
         self._add.on_click(self._on_add)
         session.hub.on(("selection",), self._follow)
-        session.hub.on(("run",), self._show_buttons)
+        session.hub.on(("selection", "run"), self._show_buttons)
         self._follow()
         self._show_buttons()
 
@@ -81,7 +83,8 @@ class WhatIfView:
         shown = self._session.selected
         if shown is None:
             return
-        if shown.kind != "whatif":
+        # the sliders' own answer must not move them: they may be further on already
+        if shown is not self._own:
             for key, slider in self._sliders.items():
                 value = getattr(shown.evaluation.variables, key)
                 if value < slider.min:
@@ -126,39 +129,48 @@ class WhatIfView:
 
     def _answer(self, level: int = 1) -> None:
         try:
-            shown = self._session.app.whatif(self._variables(), level)
+            variables = self._variables()
+            shown = self._session.app.whatif(variables, level)
+            # level 2 takes a second; what the sliders said meanwhile has been answered since
+            if shown is None or (level == 2 and self._variables() != variables):
+                return
         except HpsopError as error:
             self._session.notify("What-if", str(error), "yellow")
             return
-        if shown is None:
-            return
         self._answered = [*self._answered[-40:], time.monotonic()]
+        self._own = shown
         self._session.select(shown)
 
     def _on_level2(self, _event: viser.GuiEvent[Any]) -> None:
         def work() -> None:
-            self._level2.disabled = True
+            self._level2.disabled, self._level2.label = True, "Evaluating at level 2 …"
             try:
                 self._answer(2)
             finally:
-                self._level2.disabled = False
+                self._level2.disabled, self._level2.label = False, _LEVEL2
 
         self._session.heavy.latest("what-if level 2", work)
 
     def _on_add(self, _event: viser.GuiEvent[Any]) -> None:
-        shown = self._session.selected
-        if shown is None:
+        session, shown = self._session, self._session.selected
+        if shown is None or shown.kind != "whatif":
+            session.notify("Not added", "Move a slider first: only a design of your own making is added.", "yellow")
             return
 
         def work() -> None:
             try:
-                design_id = self._session.app.services.add_by_hand(shown.evaluation)
+                design_id = session.app.services.add_by_hand(shown.evaluation)
             except HpsopError as error:
-                self._session.notify("Not added", str(error), "yellow")
+                session.notify("Not added", str(error), "yellow")
                 return
-            self._session.notify("Added", f"Design {design_id} stands in the archive, marked as made by hand.", "green")
+            session.notify("Added", f"Design {design_id} stands in the archive, marked as made by hand.", "green")
+            session.select_id(design_id)
 
-        self._session.worker.every(work)
+        session.worker.every(work)
 
     def _show_buttons(self) -> None:
-        self._add.disabled = not self._session.app.services.can_add_by_hand()
+        shown = self._session.selected
+        own = shown is not None and shown.kind == "whatif" and shown.evaluation.ok
+        disabled = not (own and self._session.app.services.can_add_by_hand())
+        if self._add.disabled != disabled:
+            self._add.disabled = disabled

@@ -6,11 +6,13 @@ import math
 
 import numpy as np
 import pytest
-from conftest import front_marks, press, session_of, small_case, wait_until
+from conftest import choose_tab, front_marks, press, session_of, small_case, wait_until
+from PIL import Image
 
 from explorer.app import Explorer
 from explorer.security import free_port
 from hpsop_core.errors import InputError
+from hpsop_core.runs.reader import open_run
 
 
 @pytest.fixture(scope="module")
@@ -51,10 +53,6 @@ def chart_point(page, fx: float, fy: float, chart: str = "pareto") -> tuple[floa
             [chart, fx, fy],
         )
     )
-
-
-def choose_tab(page, name: str) -> None:
-    page.get_by_role("tab", name=name, exact=True).first.click()
 
 
 def test_hover_shows_all_numbers_of_the_design(page, session):
@@ -177,12 +175,9 @@ def test_pins_stand_side_by_side(page, session):
     assert "Initial design" in heads
 
 
-def test_what_if_answers_live(page, session):
-    choose_tab(page, "What-if")
-    before = session.selected
-    # the topmost slider of the panel is L/B: found by its own label
-    label = page.locator("label:visible", has_text="L/B").last
-    box = label.bounding_box()
+def drag_slider(page, label: str, share: float) -> None:
+    """Click on the track of a slider of the what-if panel, found by its own label."""
+    box = page.locator("label:visible").get_by_text(label, exact=True).last.bounding_box()
     track = page.evaluate(
         """(y) => { const found = [...document.querySelectorAll('.mantine-Slider-track')].filter(e => {
             const r = e.getBoundingClientRect();
@@ -190,7 +185,13 @@ def test_what_if_answers_live(page, session):
             const r = found[0].getBoundingClientRect(); return [r.x, r.y, r.width, r.height]; }""",
         box["y"] + box["height"] / 2,
     )
-    page.mouse.click(track[0] + 0.5 * track[2], track[1] + track[3] / 2)
+    page.mouse.click(track[0] + share * track[2], track[1] + track[3] / 2)
+
+
+def test_what_if_answers_live(page, session):
+    choose_tab(page, "What-if")
+    before = session.selected
+    drag_slider(page, "L/B", 0.5)
     wait_until(lambda: session.selected.kind == "whatif", 30, "a what-if design")
     value = session.selected.evaluation.variables.length_to_breadth
     # half of the slider's 5.5 .. 9.5
@@ -198,6 +199,94 @@ def test_what_if_answers_live(page, session):
     assert session.selected.evaluation.level == 1
     assert value != before.evaluation.variables.length_to_breadth
     assert session.selected.evaluation.variables.draft == pytest.approx(before.evaluation.variables.draft, abs=0.006)
+
+
+def test_what_if_at_level_2_and_into_the_archive(page, session, explorer):
+    """The buttons of the what-if: the same design by the panel methods, and kept in the run's file as made by hand."""
+    choose_tab(page, "What-if")
+    assert session.selected.kind == "whatif"
+    variables, known = session.selected.evaluation.variables, len(session.picture.ids)
+    page.get_by_role("button", name="Evaluate at level 2").click()
+    wait_until(lambda: session.selected.evaluation.level == 2, 120, "the answer of level 2")
+    assert session.selected.evaluation.variables == variables
+    assert session.selected.evaluation.conditions[0].total_resistance > 0.0
+    page.get_by_role("button", name="Add to the run's archive as a hand-made design").click()
+    wait_until(lambda: session.selected.kind == "run", 30, "the kept design")
+    kept = session.selected.design_id
+    assert session.selected.evaluation.variables == variables
+    assert session.selected.label.endswith("(by hand)")
+    wait_until(lambda: len(session.picture.ids) == known + 1, 20, "the archive with it")
+    assert session.picture.by_hand[session.picture.row(kept)]
+    assert open_run(explorer.folder / session.picture.name).designs([kept])[0].evaluation.variables == variables
+    # the search's own front does not change for it, and the chart marks it
+    assert all(kept not in item.members for item in session.picture.generations)
+    page.wait_for_selector(f'svg[data-chart=pareto] title:has-text("made by hand: design {kept}")', state="attached")
+    # only a design of one's own making can be added
+    wait_until(lambda: page.get_by_role("button", name="Add to the run's archive").is_disabled(), 20, "the grey button")
+
+
+def test_what_if_says_in_words_what_is_violated(page, session):
+    choose_tab(page, "What-if")
+    drag_slider(page, "D [m]", 0.97)
+    wait_until(
+        lambda: session.selected.kind == "whatif" and not session.selected.evaluation.feasible, 30, "a violation"
+    )
+    assert session.selected.evaluation.constraints["diameter_to_draft"] > 0.0
+    page.wait_for_selector('p.bad:visible:has-text("D/d")')
+
+
+def test_layers_and_choices_of_the_chart(page, session):
+    press(page, "layer", "infeasible")
+    wait_until(lambda: session.infeasible, 20, "infeasible designs")
+    if bool((~session.picture.feasible).any()):
+        page.wait_for_selector("svg[data-chart=pareto] path.dots.infeasible", state="attached")
+    press(page, "layer", "infeasible")
+    press(page, "layer", "archive")
+    wait_until(lambda: not session.archive, 20, "no archive")
+    page.wait_for_selector("svg[data-chart=pareto] path.dots.archive", state="detached")
+    press(page, "layer", "archive")
+    wait_until(lambda: session.archive, 20, "the archive")
+    choose_tab(page, "Design")
+    press(page, "choose", "knee")
+    wait_until(lambda: session.selected.design_id == session.picture.knee, 20, "the knee")
+    assert session.picture.compromise is not None
+    press(page, "choose", "compromise")
+    wait_until(lambda: session.selected.design_id == session.picture.compromise, 20, "the compromise")
+
+
+def test_camera_presets_and_the_turning_propeller(page, session, explorer):
+    client = explorer.server.get_clients()[session.client_id]
+    places = {}
+    for name in ("profile", "plan", "body", "propeller", "perspective"):
+        press(page, "camera", name)
+        wait_until(lambda name=name: session.options.camera == name, 20, name)
+        wait_until(lambda: tuple(client.camera.position) not in places.values(), 20, f"the camera of {name}")
+        places[name] = tuple(client.camera.position)
+    # profile looks along y, plan from above, the close-up stands within two diameters of the propeller
+    assert abs(places["profile"][1]) > 5 * session.selected.evaluation.hull.draft
+    assert places["plan"][2] > 5 * session.selected.evaluation.hull.draft
+    shaft = np.asarray(client.scene.get_handle_by_name("/ship/propeller").position)
+    assert np.linalg.norm(np.asarray(places["propeller"]) - shaft) < 6 * session.selected.evaluation.propeller.diameter
+    press(page, "switch", "spin")
+    frame = client.scene.get_handle_by_name("/ship/propeller")
+    before = np.array(frame.wxyz)
+    wait_until(lambda: not np.allclose(frame.wxyz, before), 20, "a turn")
+    press(page, "switch", "spin")
+    wait_until(lambda: not session.options.spin, 20, "the standstill")
+    press(page, "switch", "ghost")
+    wait_until(lambda: client.scene.get_handle_by_name("/ghost") is not None, 60, "the ghost")
+    press(page, "switch", "ghost")
+
+
+def test_screenshot_downloads_a_picture(page, session):
+    with page.expect_download() as waiting:
+        press(page, "screenshot")
+    name = waiting.value.suggested_filename
+    assert name.startswith("hpsop-")
+    with Image.open(waiting.value.path()) as picture:
+        assert picture.format == "PNG"
+        assert picture.size == tuple(session.size)
+        assert len(picture.convert("RGB").getcolors(maxcolors=2**24)) > 50  # a ship, not one colour
 
 
 def test_waves_have_a_legend_in_metres(page, session, explorer):
@@ -223,7 +312,7 @@ def test_bounds_and_refused_values(page, session, explorer):
         settings.set_field("optimization", "population", math.nan)
     assert draft.value("bounds", "draft") == (low, high)
     settings.set_bounds("draft", (14.1, 14.4))
-    page.wait_for_selector('[data-variable="draft"]:has-text("14.10 … 14.40 m")')
+    page.wait_for_selector('[data-variable="draft"]:has-text("14.1")')
     settings.set_bounds("draft", (low, high))
 
 

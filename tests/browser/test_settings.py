@@ -1,0 +1,199 @@
+"""The settings with a real mouse and keyboard; the saved case gives `hpsop optimize` the page's very result."""
+
+from __future__ import annotations
+
+import json
+import re
+import subprocess
+import sys
+import time
+from pathlib import Path
+
+import pytest
+from conftest import choose_tab, press, session_of, small_case, wait_until
+
+from explorer.app import Explorer
+from explorer.security import free_port
+from hpsop_core.case import load_case
+
+
+@pytest.fixture(scope="module")
+def explorer(tmp_path_factory):
+    page = Explorer(
+        small_case(generations=3, level1_generations=3),
+        port=free_port("127.0.0.1", 8360),
+        folder=tmp_path_factory.mktemp("runs"),
+        workers=2,
+    )
+    yield page
+    page.close()
+
+
+@pytest.fixture(scope="module")
+def page(explorer, open_page):
+    return open_page(explorer)
+
+
+@pytest.fixture
+def draft(explorer):
+    return explorer.state.draft
+
+
+def field(page, explorer, section: str, name: str):
+    """The input element of a field of the case."""
+    uuid = explorer.settings._widgets[(section, name)]._impl.uuid
+    return page.locator(f'label[for="{uuid}"]').locator("xpath=ancestor::*[.//input][1]//input")
+
+
+def replace_text(page, element, text: str) -> None:
+    """Select all and type, key by key."""
+    element.click()
+    page.keyboard.press("Control+a")
+    page.keyboard.type(text, delay=90)
+
+
+def test_typing_a_number_digit_by_digit(page, explorer, draft):
+    population = field(page, explorer, "optimization", "population")
+    replace_text(page, population, "12")
+    wait_until(lambda: draft.value("optimization", "population") == 12, 20, "population 12")
+    assert population.input_value() == "12"
+    replace_text(page, population, "8")
+    wait_until(lambda: draft.value("optimization", "population") == 8, 20, "population 8")
+    replace_text(page, field(page, explorer, "optimization", "seed"), "7")
+    wait_until(lambda: draft.value("optimization", "seed") == 7, 20, "seed 7")
+    # a changed setting is marked, and its own button takes it back
+    page.wait_for_selector('label:has-text("Seed ●")')
+    press(page, "reset_field", "optimization.seed")
+    wait_until(lambda: draft.value("optimization", "seed") == 1, 20, "the seed of the case")
+    page.wait_for_selector('label:has-text("Seed ●")', state="detached")
+    replace_text(page, field(page, explorer, "optimization", "seed"), "7")
+    wait_until(lambda: draft.value("optimization", "seed") == 7, 20, "seed 7 again")
+
+
+@pytest.fixture
+def told(explorer, page):
+    """What the page's notifications said meanwhile."""
+    session, heard = session_of(explorer), []
+    notify, session.notify = session.notify, lambda title, body, color: heard.append(body)
+    yield heard
+    session.notify = notify
+
+
+def test_a_refused_number_is_told_and_taken_back(page, explorer, draft, told):
+    population = field(page, explorer, "optimization", "population")
+    replace_text(page, population, "2")
+    # while it stands there the page says what is wrong; when the typing has rested it is taken back
+    page.wait_for_selector('p.bad:visible:has-text("population")')
+    wait_until(lambda: told, 20, "a notification")
+    assert "population: 2 is outside its limits" in told[0]
+    wait_until(lambda: population.input_value() == "8", 20, "the old value")
+    page.wait_for_selector('p.bad:visible:has-text("population")', state="detached")
+    assert draft.value("optimization", "population") == 8
+
+
+def test_settings_that_make_no_case_do_not_start(page, explorer, draft, told):
+    choose_tab(page, "Case")
+    weights = field(page, explorer, "conditions", "weights")
+    replace_text(page, weights, "0.65, 0.3")
+    wait_until(lambda: draft.value("conditions", "weights") == (0.65, 0.3), 20, "the weights")
+    page.wait_for_selector('p.bad:visible:has-text("weights sum to 0.95")')
+    press(page, "run_start")
+    wait_until(lambda: told, 20, "a notification")
+    assert "weights sum to 0.95; they must sum to 1" in told[0]
+    assert explorer.state.picture.status == "idle"
+    assert not list(explorer.folder.glob("*.hpsop"))
+    replace_text(page, weights, "0.6, 0.4")
+    wait_until(lambda: draft.value("conditions", "weights") == (0.6, 0.4), 20, "the weights")
+    page.wait_for_selector('p.bad:visible:has-text("weights sum")', state="detached")
+    choose_tab(page, "Design space")
+
+
+def test_a_thumb_is_dragged_and_the_readout_follows(page, explorer, draft):
+    slider = explorer.settings._sliders["length_to_breadth"]
+    box = page.locator('[data-variable="length_to_breadth"]').bounding_box()
+    thumbs = page.evaluate(
+        """(y) => [...document.querySelectorAll('.multi-slider-thumb, .mantine-Slider-thumb, [class*=thumb]')]
+            .map(e => e.getBoundingClientRect())
+            .filter(r => r.width > 2 && r.x < 400 && y - (r.y + r.height / 2) > 0 && y - (r.y + r.height / 2) < 45)
+            .map(r => [r.x + r.width / 2, r.y + r.height / 2])""",
+        box["y"] + box["height"] / 2,
+    )
+    assert len(thumbs) >= 2, "the two thumbs of L/B"
+    (x, y), *_ = sorted(thumbs)
+    page.mouse.move(x, y)
+    page.mouse.down()
+    page.mouse.move(x + 25, y, steps=6)
+    page.mouse.up()
+    wait_until(lambda: draft.changed("bounds", "length_to_breadth"), 20, "the moved bound")
+    readout = page.locator('[data-variable="length_to_breadth"] span').first
+
+    def agrees() -> bool:
+        low, high = draft.value("bounds", "length_to_breadth")
+        shown = tuple(float(part) for part in readout.inner_text().split(" … "))
+        return slider.value == pytest.approx((low, high)) and shown == (low, high)
+
+    wait_until(agrees, 20, "the readout")
+    low, high = draft.value("bounds", "length_to_breadth")
+    assert 6.5 < low < high == 8.5
+
+
+def test_the_saved_case_gives_the_same_front(page, explorer, draft, tmp_path):
+    """TOML from the page, run by the command with another number of workers: the same bits."""
+    # the TOML must carry what was set on the page, also numbers with many digits
+    assert draft.count() >= 2
+    choose_tab(page, "Case")
+    with page.expect_download() as waiting:
+        page.get_by_role("button", name="Save this case as TOML").click()
+    saved = tmp_path / "saved.toml"
+    waiting.value.save_as(saved)
+    assert load_case(saved) == draft.case()
+    choose_tab(page, "Design space")
+    press(page, "run_start")
+    wait_until(lambda: explorer.state.picture.status == "finished", 90, "the run of three generations")
+    (mine,) = explorer.folder.glob("*.hpsop")
+    theirs = tmp_path / "command.hpsop"
+    command = Path(sys.executable).with_name("hpsop")
+    subprocess.run([command, "optimize", saved, "--run", theirs, "--workers", "1"], check=True, capture_output=True)
+
+    def front(path: Path) -> list[dict]:
+        shown = subprocess.run([command, "show", path, "--front", "--json"], check=False, capture_output=True)
+        assert shown.returncode == 0, shown.stderr.decode()
+        return json.loads(shown.stdout)["designs"]
+
+    assert front(mine) == front(theirs)
+    assert len(front(mine)) >= 1
+
+
+def test_a_preset_is_chosen_and_its_two_lines_stand(page, explorer, draft):
+    wanted = load_case("dtc-p4119-paper")
+    element = page.locator(f'[id="{explorer.settings._preset._impl.uuid}"]')
+    element.click()
+    page.get_by_role("option", name="dtc-p4119-paper", exact=True).click()
+    wait_until(lambda: draft.base.name == "dtc-p4119-paper", 20, "the paper's case")
+    assert draft.count() == 0
+    first, second = wanted.description.strip().splitlines()[:2]
+    page.wait_for_selector(f"text={first[:40]}")
+    page.wait_for_selector(f"text={second[:40]}")
+    # the widgets show the preset's own values
+    assert field(page, explorer, "optimization", "population").input_value() == str(wanted.optimization.population)
+    low, high = wanted.bounds.as_dict()["draft"]
+    shown = page.locator('[data-variable="draft"] span').first
+    wait_until(lambda: re.findall(r"[0-9.]+", shown.inner_text()) != [], 20, "the readout")
+    assert [float(part) for part in re.findall(r"[0-9.]+", shown.inner_text())] == [low, high]
+    # the shown run's settings come back by its own button
+    choose_tab(page, "Runs")
+    press(page, "adopt")
+    wait_until(lambda: draft.value("optimization", "seed") == 7, 20, "the settings of the shown run")
+    assert draft.case() == explorer.state.picture.case
+    choose_tab(page, "Design space")
+
+
+def test_a_fixed_variable_says_so(page, explorer, draft):
+    explorer.settings.set_bounds("draft", (14.2, 14.2))
+    page.wait_for_selector('[data-variable="draft"]:has-text("fixed at 14.2")')
+    page.get_by_role("button", name="Reset changes to the preset").click()
+    wait_until(lambda: not draft.changed("bounds", "draft"), 20, "the reset")
+    deadline = time.monotonic() + 5.0
+    while draft.count() and time.monotonic() < deadline:
+        time.sleep(0.05)
+    assert draft.count() == 0
