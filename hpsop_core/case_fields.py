@@ -122,20 +122,26 @@ def checked_value(value: object, rule: FieldRule, where: str) -> Any:
 def _checked_number(value: object, rule: FieldRule, where: str) -> float | int:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
         raise InputError(f"{where}: {value!r} is not a number; give a number{_limits(rule)}")
-    if not math.isfinite(value):
+    # Not isfinite: Python's whole numbers may be greater than every double.
+    if value != value or abs(value) == math.inf:
         raise InputError(f"{where}: {value} is not a finite number; give a number{_limits(rule)}")
     if rule.kind == "integer":
-        if float(value) != round(value):
+        if value != round(value):
             raise InputError(f"{where}: {value} is not a whole number; give a whole number{_limits(rule)}")
         value = round(value)
     if not rule.lower <= value <= rule.upper:
-        raise InputError(f"{where}: {value:g} is outside its limits; give a number{_limits(rule)}")
+        raise InputError(f"{where}: {_shown(value)} is outside its limits; give a number{_limits(rule)}")
     return value if rule.kind == "integer" else float(value)
 
 
 def _limits(rule: FieldRule) -> str:
     unit = f" {rule.unit}" if rule.unit else ""
-    return f" from {rule.lower:g} to {rule.upper:g}{unit}" if math.isfinite(rule.lower) else unit
+    return f" from {_shown(rule.lower)} to {_shown(rule.upper)}{unit}" if math.isfinite(rule.lower) else unit
+
+
+def _shown(value: float | int) -> str:
+    # Whole numbers with every digit; one that no double reaches would not even print.
+    return f"{value:g}" if isinstance(value, float) else str(value) if abs(value) < 10**15 else "a huge number"
 
 
 def read_section(section: type[Section], table: Mapping[str, object], where: str) -> Section:

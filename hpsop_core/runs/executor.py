@@ -19,6 +19,7 @@ from hpsop_core.errors import InputError
 from hpsop_core.runs.tasks import start_worker, warm_up_task
 
 _START_LIMIT = 120.0  # seconds for all workers of a pool to import what they need
+_MOST_WORKERS_PER_CORE = 16  # each holds some 200 MB; more than one a core gains nothing
 _CLUSTER_INTERVAL = 2.0  # seconds between looks at how many threads a cluster has
 _THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
 
@@ -220,12 +221,16 @@ def checked_executor(executor: str, count: int | None) -> str:
         InputError: no such executor, or a number of workers that it cannot have.
     """
     kind, _, address = executor.partition(":")
-    if count is not None and count < 1:
-        raise InputError(f"--workers {count}: give 1 or more")
+    most = _MOST_WORKERS_PER_CORE * default_workers()
+    if count is not None and not 1 <= count <= most:
+        raise InputError(f"--workers {count}: give 1 to {most} on this machine, best one a core ({default_workers()})")
     if executor == "local":
         return ""
     if kind != "dask" or not address:
         raise InputError(f"--executor {executor}: write local or dask:HOST:PORT")
+    port = address.rpartition(":")[2]
+    if not (port.isascii() and port.isdigit() and 0 < int(port) < 2**16 and address.partition(":")[0]):
+        raise InputError(f"--executor {executor}: write dask:HOST:PORT, for example dask:10.0.0.1:8786")
     if count is not None:
         raise InputError("--workers: the Dask cluster decides how many; leave it away with --executor dask")
     if importlib.util.find_spec("distributed") is None:

@@ -13,18 +13,22 @@ from typing import Any
 from hpsop_core.case import Case, case_from_toml
 from hpsop_core.design import DesignVariables
 from hpsop_core.errors import InputError
+from hpsop_core.evaluation_result import Evaluation
 from hpsop_core.optimization.decision import compromise
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.runs.lock import is_being_written
+from hpsop_core.runs.packing import unpack
 from hpsop_core.runs.records import (
     ArchivePoint,
     DesignRecord,
     Failure,
     GenerationRecord,
-    design_from_row,
     generation_from_text,
+    named_variables,
 )
 from hpsop_core.runs.schema import HAND_IDS_BEGIN, connect_reader, schema_version
+
+_BEYOND_ANY_ID = 2**63  # SQLite's integers end here
 
 
 class RunReader:
@@ -181,14 +185,21 @@ class RunReader:
         """
         missing = [number for number in ids if number not in self._designs]
         if missing:
+            dictionary = b""
             with self._reading() as connection:
                 for number in missing:
-                    row = connection.execute(
-                        "SELECT id, origin, generation, result FROM evaluations WHERE id = ?", (number,)
-                    ).fetchone()
+                    row = None
+                    if abs(number) < _BEYOND_ANY_ID:
+                        row = connection.execute(
+                            "SELECT origin, generation, variables, result FROM evaluations WHERE id = ?", (number,)
+                        ).fetchone()
                     if row is None:
                         raise InputError(f"{self.path}: has no design {number}; see 'hpsop show {self.path} --front'")
-                    self._designs[number] = design_from_row(row)
+                    origin, generation, variables, result = row
+                    # Asked after the row: it was written with the first one.
+                    dictionary = dictionary or bytes.fromhex(_values(connection)["dictionary"])
+                    evaluation = Evaluation.from_dict(unpack(result, dictionary, variables))
+                    self._designs[number] = DesignRecord(number, origin, generation, evaluation)
         return tuple(self._designs[number] for number in ids)
 
     def design(self, name: int | str, generation: int | None = None) -> DesignRecord:
@@ -277,7 +288,7 @@ class RunReader:
         """Failed evaluations, in the order asked."""
         with self._reading() as connection:
             rows = connection.execute(
-                "SELECT id, level, generation, stage, reason, result, elapsed FROM evaluations "
+                "SELECT id, level, generation, stage, reason, variables, elapsed FROM evaluations "
                 "WHERE status <> 'ok' ORDER BY id"
             ).fetchall()
         return tuple(
@@ -287,10 +298,10 @@ class RunReader:
                 generation=generation,
                 stage=stage,
                 reason=reason,
-                variables=DesignVariables.from_dict(json.loads(result)["variables"]),
+                variables=DesignVariables.from_dict(named_variables(variables)),
                 elapsed=elapsed,
             )
-            for number, level, generation, stage, reason, result, elapsed in rows
+            for number, level, generation, stage, reason, variables, elapsed in rows
         )
 
     def reference(self, level: int) -> dict[str, Any] | None:

@@ -14,12 +14,12 @@ from hpsop_core.errors import InputError
 APPLICATION_ID = 0x48505350
 """Stands in the file's header, so that any tool can tell a run file from another SQLite file ("HPSP")."""
 
-SCHEMA_VERSION = 1
+SCHEMA_VERSION = 2
 
 HAND_IDS_BEGIN = 1_000_000_001
 """Ids of designs made by hand begin here: the search's own ids count from 1 in the order asked, come what may."""
 
-# How to lift a file from an older schema, by the version it has. Version 1 is the first one.
+# How to lift a file from an older schema, by the version it has. Version 1 was never published.
 MIGRATIONS: dict[int, str] = {}
 
 _TABLES = """
@@ -37,12 +37,12 @@ CREATE TABLE evaluations (
     feasible INTEGER NOT NULL,
     first_objective REAL,
     second_objective REAL,
-    constraints TEXT NOT NULL,    -- as JSON
     elapsed REAL NOT NULL,
     finished_at REAL NOT NULL,    -- seconds since 1970
-    result TEXT NOT NULL          -- the evaluation's whole JSON
+    fingerprint INTEGER NOT NULL, -- of level and variables
+    result BLOB NOT NULL          -- the evaluation's whole JSON, packed (packing.py)
 );
-CREATE UNIQUE INDEX one_evaluation ON evaluations (level, variables) WHERE origin <> 'hand';
+CREATE UNIQUE INDEX one_evaluation ON evaluations (fingerprint) WHERE origin <> 'hand';
 CREATE INDEX failed_evaluations ON evaluations (status) WHERE status <> 'ok';
 CREATE TABLE generations (
     number INTEGER PRIMARY KEY,
@@ -94,6 +94,8 @@ def create_tables(connection: sqlite3.Connection) -> None:
 def connect_writer(path: Path) -> sqlite3.Connection:
     """A connection that may write; the caller holds the writer's lock."""
     connection = sqlite3.connect(path, timeout=10.0, isolation_level=None, check_same_thread=False)
+    # Only a new file obeys: on the usual 4096 bytes an evaluation of 1 kB would leave a quarter of every page empty.
+    connection.execute("PRAGMA page_size = 16384")
     # WAL: readers see whole generations while the run is written. NORMAL: a commit is in the kernel's hands when it
     # returns, so no kill of the process loses it; only a power failure may take the last few (never the file).
     connection.execute("PRAGMA journal_mode = WAL")

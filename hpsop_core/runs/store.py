@@ -19,13 +19,8 @@ from hpsop_core.evaluation_result import Evaluation
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.problem import Candidate, Outcome
 from hpsop_core.runs.lock import WriterLock
-from hpsop_core.runs.records import (
-    generation_from_text,
-    generation_text,
-    json_text,
-    outcome_from_row,
-    variables_text,
-)
+from hpsop_core.runs.packing import dictionary_of, pack, unpack
+from hpsop_core.runs.records import fingerprint, generation_from_text, generation_text, json_text, variables_text
 from hpsop_core.runs.schema import (
     HAND_IDS_BEGIN,
     connect_writer,
@@ -183,10 +178,13 @@ class RunStore:
         """Every evaluation of the search by (level, variables text)."""
         with self._guard:
             rows = self._connection.execute(
-                "SELECT level, variables, id, status, feasible, first_objective, second_objective, constraints "
-                "FROM evaluations WHERE origin <> 'hand'"
+                "SELECT level, variables, id, result FROM evaluations WHERE origin <> 'hand'"
             ).fetchall()
-        return {(row[0], row[1]): outcome_from_row(row[2:]) for row in rows}
+            dictionary = bytes.fromhex(self.value("dictionary"))
+        return {
+            (level, text): Outcome.from_json(number, unpack(result, dictionary, text))
+            for level, text, number, result in rows
+        }
 
     def elapsed_of(self, number: int) -> float | None:
         """How long an evaluation took in s, or None if there is none of that number."""
@@ -217,7 +215,7 @@ class RunStore:
         data = json.loads(result)
         with self._writing() as connection:
             variables, origin = candidate.variables, candidate.origin
-            _insert(connection, number, candidate.level, variables, origin, generation, data, result)
+            _insert(connection, number, candidate.level, variables, origin, generation, data)
         return Outcome.from_json(number, data)
 
     def record_by_hand(self, evaluation: Evaluation) -> int:
@@ -233,14 +231,14 @@ class RunStore:
         data = evaluation.as_dict()
         with self._writing() as connection:
             row = connection.execute(
-                "SELECT id FROM evaluations WHERE origin = 'hand' AND level = ? AND variables = ?",
-                (evaluation.level, text),
+                "SELECT id FROM evaluations WHERE id >= ? AND level = ? AND variables = ?",
+                (HAND_IDS_BEGIN, evaluation.level, text),
             ).fetchone()
             if row is not None:
                 return int(row[0])
             last = connection.execute("SELECT max(id) FROM evaluations WHERE origin = 'hand'").fetchone()[0]
             number = HAND_IDS_BEGIN if last is None else int(last) + 1
-            _insert(connection, number, evaluation.level, evaluation.variables, "hand", 0, data, json_text(data))
+            _insert(connection, number, evaluation.level, evaluation.variables, "hand", 0, data)
         return number
 
     # -- generations -----------------------------------------------------------------------------------------------
@@ -326,12 +324,16 @@ def _insert(
     origin: str,
     generation: int,
     data: dict[str, Any],
-    result: str,
 ) -> None:
+    found = connection.execute("SELECT value FROM run WHERE key = 'dictionary'").fetchone()
+    dictionary = dictionary_of(data) if found is None else bytes.fromhex(found[0])
+    if found is None:
+        connection.execute("INSERT INTO run VALUES ('dictionary', ?)", (dictionary.hex(),))
+    text = variables_text(variables)
     row = (
         number,
         level,
-        variables_text(variables),
+        text,
         origin,
         generation,
         data["status"],
@@ -340,9 +342,9 @@ def _insert(
         int(data["feasible"]),
         data["objectives"]["f1"],
         data["objectives"]["f2"],
-        json_text(data["constraints"]),
         data["elapsed"],
         time.time(),
-        result,
+        fingerprint(level, text),
+        pack(data, dictionary),
     )
     connection.execute(f"INSERT INTO evaluations VALUES ({','.join('?' * len(row))})", row)

@@ -11,6 +11,7 @@ from pathlib import Path
 from typing import Any
 
 from hpsop_core.case import Case, load_case
+from hpsop_core.runs.reader import open_run
 
 
 def small_case(**settings: object) -> Case:
@@ -34,16 +35,16 @@ def content(path: Path, ids: bool = True) -> dict[str, Any]:
     connection = sqlite3.connect(path)
     rows = connection.execute(
         "SELECT id, level, variables, origin, generation, status, stage, reason, feasible, first_objective, "
-        "second_objective, constraints, result FROM evaluations WHERE origin <> 'hand' ORDER BY id"
+        "second_objective FROM evaluations WHERE origin <> 'hand' ORDER BY id"
     ).fetchall()
     generations = connection.execute("SELECT number, level, data FROM generations ORDER BY number").fetchall()
     connection.close()
     evaluations = []
-    for row in rows:
-        result = json.loads(row[-1])
+    for row, record in zip(rows, open_run(path).designs([row[0] for row in rows]), strict=True):
+        result = record.evaluation.as_dict()
         del result["elapsed"]
         # repr of a float is exact; comparing texts also tells -0.0 from 0.0.
-        evaluations.append((*(repr(value) for value in row[0 if ids else 1 : -1]), json.dumps(result, sort_keys=True)))
+        evaluations.append((*(repr(value) for value in row[0 if ids else 1 :]), json.dumps(result, sort_keys=True)))
     return {"evaluations": evaluations, "generations": generations}
 
 

@@ -108,6 +108,8 @@ def test_show_summary_generation_and_texts(folder: Path) -> None:
     [
         (("show", "nowhere.hpsop"), "no such run file"),
         (("show", RUN, "--design", "9999"), "has no design 9999"),
+        (("show", RUN, "--design", "1" + "0" * 30), "has no design 1000"),
+        (("show", RUN, "--design", "-1"), "has no design -1"),
         (("show", RUN, "--design", "best"), "give a design's number"),
         (("show", RUN, "--generation", "5"), "has generations 1 to 4"),
         (("show", RUN, "--front", "--design", "1"), "ask one of them"),
@@ -117,8 +119,13 @@ def test_show_summary_generation_and_texts(folder: Path) -> None:
         (("optimize", "dtc-p4119-paper", "--run", "x/y.hpsop"), "folder cannot be written"),
         (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--population", "1"), "population"),
         (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--workers", "0"), "--workers 0"),
+        (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--workers", "100000"), "--workers 100000"),
         (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--generations", "many"), "--generations"),
+        (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--seed", "1" + "0" * 400), "2147483647"),
+        (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--seeds-from", "old.hpsop"), "no such run file"),
         (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--executor", "dask"), "local or dask:HOST:PORT"),
+        (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--executor", "dask:head"), "dask:HOST:PORT"),
+        (("optimize", "dtc-p4119-paper", "--run", "new.hpsop", "--executor", "dask:head:0"), "dask:HOST:PORT"),
         (("optimize", "dtc-p4119-paper"), "--run"),
     ],
 )

@@ -142,13 +142,14 @@ def test_workers_that_cannot_start_are_told_in_one_line(tmp_path: Path) -> None:
 
 def test_a_full_disk_pauses_the_run_and_room_lets_it_go_on(tmp_path: Path) -> None:
     path, whole = tmp_path / "run.hpsop", tmp_path / "whole.hpsop"
-    optimize(small_case(), whole, workers=1, physics=physics())
-    controller = RunController(path, small_case(), workers=2, physics=physics())
+    case = small_case(population=40)  # more than fits on the pages that are there from the beginning
+    optimize(case, whole, workers=1, physics=physics())
+    controller = RunController(path, case, workers=2, physics=physics())
     reasons: list[str] = []
     with controller:
         connection = controller._store._connection
         pages = connection.execute("PRAGMA page_count").fetchone()[0]
-        connection.execute(f"PRAGMA max_page_count = {pages + 12}")
+        connection.execute(f"PRAGMA max_page_count = {pages + 1}")
         controller.subscribe(lambda event: reasons.append(event.snapshot.reason))
         controller.start()
         wait_until(lambda: controller.snapshot().state == "paused", 30.0)
@@ -213,14 +214,6 @@ def test_no_process_is_left_behind_on_any_exit(tmp_path: Path, how: signal.Signa
     process.wait(timeout=30)
     wait_until(lambda: not any(is_alive(child) for child in family), 5.0)
     RunStore(path).close()  # and the file is free
-
-
-def RunReaderProgress(path: Path) -> int:
-    """Evaluations in a file that may not be a run yet."""
-    try:
-        return open_run(path).progress()[1]
-    except InputError:
-        return 0
 
 
 def _progress(path: Path) -> int:

@@ -176,8 +176,8 @@ def test_6_a_full_disk_refuses_the_write_and_leaves_the_file_as_it_was(path: Pat
     store._connection.execute(f"PRAGMA max_page_count = {pages}")
     number = 1
     with pytest.raises(StoreUnwritableError, match="full"):
-        for number in range(2, 50):
-            asked = candidate(14.0 + number / 100)
+        for number in range(2, 2000):
+            asked = candidate(14.0 + number / 10000)
             store.record_evaluation(number, asked, 1, result(asked))
     assert open_run(path).progress()[1] == number - 1
     store._connection.execute("PRAGMA max_page_count = 1000000")

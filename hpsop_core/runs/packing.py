@@ -1,0 +1,96 @@
+"""How an evaluation's JSON is kept in a run file: its numbers as they are in memory, its words once.
+
+A run of 7,500 evaluations holds some 150 numbers each; as plain JSON that is 42 MB, packed it is 9. What is stored is
+read back to the last bit. The first evaluation of a run is its dictionary: the words, and the numbers that never change,
+cost nothing from then on.
+"""
+
+from __future__ import annotations
+
+import json
+import math
+import struct
+import zlib
+from collections.abc import Iterator, Mapping, Sequence
+from typing import Any
+
+from hpsop_core.runs.records import json_text, named_variables
+
+_RAW_DEFLATE = -15  # without zlib's header and check sum: SQLite's pages are what is trusted here
+_BREAK = b"\0"
+
+
+def pack(document: Mapping[str, Any], dictionary: bytes) -> bytes:
+    """The evaluation's JSON document as bytes.
+
+    Args:
+        document: as ``Evaluation.as_dict``; not changed. Its variables are left out: they stand in the design's row.
+        dictionary: the run's, as ``dictionary_of`` made it.
+
+    Raises:
+        ValueError: a number is not finite.
+    """
+    packer = zlib.compressobj(9, zlib.DEFLATED, _RAW_DEFLATE, zdict=dictionary)
+    return packer.compress(dictionary_of(document)) + packer.flush()
+
+
+def unpack(packed: bytes, dictionary: bytes, variables: str) -> dict[str, Any]:
+    """The document that ``pack`` was given.
+
+    Args:
+        packed: its bytes.
+        dictionary: the run's.
+        variables: the design's, as the text in its row.
+    """
+    unpacker = zlib.decompressobj(_RAW_DEFLATE, zdict=dictionary)
+    words, _, binary = (unpacker.decompress(packed) + unpacker.flush()).partition(_BREAK)
+    document: dict[str, Any] = _joined(json.loads(words), (number for (number,) in struct.iter_unpack("<d", binary)))
+    document["variables"] = named_variables(variables)
+    curves = document.get("open_water")
+    if curves and "open_water_efficiency" not in curves:
+        curves["open_water_efficiency"] = _efficiencies(curves)
+    return document
+
+
+def dictionary_of(document: Mapping[str, Any]) -> bytes:
+    """What is deflated, and a run's dictionary if it is made of the first evaluation: words, a break, numbers."""
+    essence = {key: value for key, value in document.items() if key != "variables"}
+    curves = document.get("open_water")
+    # Compared as text, which tells -0.0 from 0.0.
+    if curves and json_text(curves["open_water_efficiency"]) == json_text(_efficiencies(curves)):
+        essence["open_water"] = {key: value for key, value in curves.items() if key != "open_water_efficiency"}
+    numbers: list[float] = []
+    words = json_text(_split(essence, numbers))
+    if not all(map(math.isfinite, numbers)):
+        raise ValueError("an evaluation with a number that is not finite")
+    return words.encode() + _BREAK + struct.pack(f"<{len(numbers)}d", *numbers)
+
+
+def _split(value: Any, numbers: list[float]) -> Any:
+    """The value with 0.0 for each real number, which goes to ``numbers`` in the order met."""
+    if isinstance(value, float):
+        numbers.append(value)
+        return 0.0
+    if isinstance(value, Mapping):
+        return {key: _split(item, numbers) for key, item in value.items()}
+    if isinstance(value, (list, tuple)):
+        return [_split(item, numbers) for item in value]
+    return value
+
+
+def _joined(value: Any, numbers: Iterator[float]) -> Any:
+    if isinstance(value, float):
+        return next(numbers)
+    if isinstance(value, dict):
+        return {key: _joined(item, numbers) for key, item in value.items()}
+    if isinstance(value, list):
+        return [_joined(item, numbers) for item in value]
+    return value
+
+
+def _efficiencies(curves: Mapping[str, Sequence[float]]) -> list[float | None]:
+    # The evaluation's own formula, operation by operation: the same bits, or the column is stored.
+    names = ("advance_coefficient", "thrust_coefficient", "torque_coefficient")
+    return [
+        j * kt / (2.0 * math.pi * kq) if kq else None for j, kt, kq in zip(*(curves[n] for n in names), strict=True)
+    ]

@@ -1,0 +1,73 @@
+"""What a run file keeps of an evaluation is the whole of it, to the last bit, in a fifth of the room."""
+
+from __future__ import annotations
+
+import json
+from typing import Any
+
+import pytest
+
+from hpsop_core import evaluate, load_case
+from hpsop_core.evaluation_result import Evaluation, failed_evaluation
+from hpsop_core.runs.packing import dictionary_of, pack, unpack
+from hpsop_core.runs.records import json_text, variables_text
+
+CASE = load_case("dtc-p4119")
+
+
+def document(level: int = 1, **changes: float) -> dict[str, Any]:
+    variables = CASE.initial.variables.replaced(changes)
+    return json.loads(json_text(evaluate(CASE, variables, level).as_dict()))
+
+
+def there_and_back(data: dict[str, Any], dictionary: bytes) -> dict[str, Any]:
+    variables = Evaluation.from_dict(data).variables
+    return unpack(pack(data, dictionary), dictionary, variables_text(variables))
+
+
+def exact(data: dict[str, Any]) -> str:
+    # Python's JSON writes the shortest text that reads back to the same double, and -0.0 as such.
+    return json.dumps(data, sort_keys=True)
+
+
+def test_real_evaluations_of_both_levels_come_back_to_the_last_bit() -> None:
+    dictionary = dictionary_of(document())
+    for level, changes in ((1, {"diameter": 9.3}), (2, {"draft": 14.2, "blade_count": 5}), (1, {"diameter": 0.02})):
+        data = document(level, **changes)
+        before = exact(data)
+        assert exact(there_and_back(data, dictionary)) == before
+        assert exact(data) == before, "what was given is not changed"
+
+
+def test_any_document_comes_back_whatever_the_dictionary_was() -> None:
+    plain = document()
+    awkward = {
+        **plain,
+        "warnings": ["a zero \0 byte, an umlaut ü, a number 0.0", ""],
+        "constraints": {"displacement": -0.0, "diameter_to_draft": 0.0, "cavitation": None, "form": 5e-324},
+        "all_objectives": {"whole": 3, "flag": True, "large": 1.7976931348623157e308},
+        "open_water": {
+            "advance_coefficient": [0.2, 0.4, 0.6],
+            "thrust_coefficient": [0.1, 0.2, -0.0],
+            "torque_coefficient": [0.0, 0.03, 0.02],
+            # Not what J KT/(2 pi KQ) gives, and one that it cannot give.
+            "open_water_efficiency": [None, 0.5, 0.0],
+        },
+    }
+    failed = failed_evaluation("c", CASE.initial.variables, 2, "rankine", "the system is singular", 0.1).as_dict()
+    for data in (plain, awkward, failed):
+        for dictionary in (dictionary_of(plain), dictionary_of(failed), b"something else"):
+            assert exact(there_and_back(data, dictionary)) == exact(data)
+
+
+@pytest.mark.parametrize("number", [float("nan"), float("inf")])
+def test_what_is_no_number_is_refused(number: float) -> None:
+    with pytest.raises(ValueError, match="not finite"):
+        pack({**document(), "elapsed": number}, b"")
+
+
+def test_it_takes_a_fifth_of_the_room() -> None:
+    dictionary = dictionary_of(document())
+    data = document(diameter=9.3, draft=14.2, length_to_breadth=7.2, displacement_ratio=1.01)
+    # About 105 numbers are its own, at 8 bytes; the JSON has 4.9 kB.
+    assert len(pack(data, dictionary)) < 0.2 * len(json_text(data))
