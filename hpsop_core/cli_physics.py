@@ -63,7 +63,9 @@ def add_parsers(commands: Any) -> None:
     open_water.add_argument("--diameter", metavar="D", help=f"in m, {MODEL_TEST[0]} unless given")
     open_water.add_argument("--rotation-rate", metavar="N", help=f"in 1/s, {MODEL_TEST[1]} unless given")
     open_water.add_argument("--viscosity", metavar="NU", help=f"in m2/s, {MODEL_TEST[2]} unless given")
-    open_water.add_argument("--inviscid", action="store_true", help="without section drag")
+    open_water.add_argument(
+        "--inviscid", action="store_true", help="without section drag and without the viscous factor on the lift"
+    )
     add_level(open_water)
     add_set(open_water)
     add_json(open_water)
@@ -76,9 +78,13 @@ def add_parsers(commands: Any) -> None:
 
 def _evaluate(arguments: argparse.Namespace) -> int:
     from hpsop_core.evaluation import evaluate
+    from hpsop_core.resistance import parent_hull
 
     case, variables = case_and_design(arguments.case, arguments.changes)
     result = evaluate(case, variables, arguments.level)
+    report = parent_hull(case.hull).fit_report
+    if report is not None:
+        print(report, file=sys.stderr)
     if arguments.json:
         print_json(result.as_dict())
     else:
@@ -196,7 +202,7 @@ def _resistance(arguments: argparse.Namespace) -> int:
         print_json({"hull": figures, "points": [dataclasses.asdict(point) for point in points]})
         return 0
     print(", ".join(f"{name} {value:.6g}" for name, value in figures.items()))
-    for warning in hull.warnings:
+    for warning in dict.fromkeys([*hull.warnings, *(line for point in points for line in point.warnings)]):
         print(f"warning: {warning}", file=sys.stderr)
     rows = [
         [
@@ -212,9 +218,11 @@ def _resistance(arguments: argparse.Namespace) -> int:
 
 
 def _open_water(arguments: argparse.Namespace) -> int:
+    import numpy as np
+
     from hpsop_core.evaluation import design_propeller
     from hpsop_core.geometry.propeller import propeller_family, radial_table_from_csv
-    from hpsop_core.hydro.open_water import SectionDrag
+    from hpsop_core.hydro.open_water import SectionDrag, reynolds_number_07R
     from hpsop_core.propulsion import solve_open_water
 
     advance = number_list(arguments.advance, ADVANCE_RULE, "--advance")
@@ -237,13 +245,11 @@ def _open_water(arguments: argparse.Namespace) -> int:
             raise InputError("open-water: --blades goes with --geometry; change a case by --set blade_count=Z")
         case, variables = case_and_design(arguments.case, arguments.changes)
         propeller = design_propeller(case, variables).with_diameter(size)
-    if arguments.inviscid:
-        drag = SectionDrag.inviscid()
-    else:
-        drag = SectionDrag.model_scale(
-            MODEL_TEST[1] if rate is None else rate, MODEL_TEST[2] if viscosity is None else viscosity
-        )
+    rotation_rate = MODEL_TEST[1] if rate is None else rate
+    kinematic = MODEL_TEST[2] if viscosity is None else viscosity
+    drag = SectionDrag.inviscid() if arguments.inviscid else SectionDrag.model_scale(rotation_rate, kinematic)
     result = solve_open_water(propeller, arguments.level, advance, drag)
+    reynolds = reynolds_number_07R(propeller, np.array(advance), rotation_rate, kinematic)
     points: list[dict[str, Any]] = []
     for j, kt, kq in zip(advance, result.thrust_coefficient, result.torque_coefficient, strict=True):
         points.append(
@@ -262,7 +268,9 @@ def _open_water(arguments: argparse.Namespace) -> int:
                 "diameter": propeller.diameter,
                 "blade_count": propeller.blade_count,
                 "expanded_area_ratio": propeller.expanded_area_ratio,
-                "reynolds_number_07R": _plain(result.reynolds_number_07R),
+                "reynolds_number_07R": reynolds.tolist(),
+                "solver": result.solver,
+                "settings": result.settings,
                 "points": points,
             }
         )
@@ -273,12 +281,12 @@ def _open_water(arguments: argparse.Namespace) -> int:
         for p in points
     ]  # fmt: skip
     print_table(["J", "KT", "10KQ", "eta0"], rows)
+    print(
+        f"{result.solver}; D {propeller.diameter:g} m, Z {propeller.blade_count}, EAR "
+        f"{propeller.expanded_area_ratio:.3f}, "
+        + ("no viscosity" if arguments.inviscid else f"Re at 0.7 R {reynolds.min():.2e} to {reynolds.max():.2e}")
+    )
     return 0
-
-
-def _plain(value: Any) -> Any:
-    """A number or a list of numbers from a number or an array."""
-    return value.tolist() if hasattr(value, "tolist") else value
 
 
 def _validate(arguments: argparse.Namespace) -> int:

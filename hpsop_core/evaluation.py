@@ -94,6 +94,7 @@ class _Physics:
     curve: PropellerCurve
     effective_volume: float
     effective_block_coefficient: float
+    warnings: tuple[str, ...]
 
 
 @one_blas_thread()
@@ -286,7 +287,9 @@ def _compute(case: Case, variables: DesignVariables, level: int, basis: Referenc
         )
         for froude, wave, weight in zip(froude_numbers, waves, case.conditions.weights, strict=True)
     )
-    return _Physics(hull, propeller, conditions, answer.curve, volume, block_coefficient)
+    # A solver tells everything of one call with each of its answers.
+    warnings = tuple(dict.fromkeys(line for wave in waves for line in wave.warnings))
+    return _Physics(hull, propeller, conditions, answer.curve, volume, block_coefficient, warnings)
 
 
 def _condition(
@@ -380,7 +383,7 @@ def _assess(
     constraints = _constraints(case, level, variables, basis, physics, clearance)
     objectives = _objectives(basis, physics)
     affine = case.hull.form == "affine"
-    warnings = list(hull.warnings)
+    warnings = [*hull.warnings, *physics.warnings]
     if clearance < 0.0:
         warnings.append(f"the propeller would cut the hull: tip clearance {clearance:.2f} m; reduce its diameter")
     if baseline_clearance(hull, propeller) < 0.0:

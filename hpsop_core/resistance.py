@@ -9,6 +9,7 @@ from pathlib import Path
 
 from hpsop_core.case_sections import HullSection
 from hpsop_core.design import DesignVariables
+from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.geometry.hull import Hull, ParentHull, load_parent_hull
 from hpsop_core.geometry.hull_input import parent_hull_from_offsets, parent_hull_from_stl
 from hpsop_core.hydro import michell
@@ -42,12 +43,14 @@ class WaveAnswer:
         wave_coefficient: Rw over 1/2 rho V^2 S, S the design's own static wetted surface.
         wave_coefficient_pressure: level 2's cross-check, else None.
         sinkage: level 2, in m, positive down; trim: in rad, positive bow down; else None.
+        warnings: what the solver says about its answers, one line each.
     """
 
     wave_coefficient: float
     wave_coefficient_pressure: float | None = None
     sinkage: float | None = None
     trim: float | None = None
+    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -65,6 +68,7 @@ class ResistancePoint:
     sinkage: float | None
     trim: float | None
     wave_calibration: float
+    warnings: tuple[str, ...] = ()
 
 
 @lru_cache(maxsize=8)
@@ -123,7 +127,11 @@ def wave_answers(variables: HullVariables, level: int, froude_numbers: tuple[flo
 
 
 def solve_waves(hull: Hull, level: int, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:
-    """As ``wave_answers``, for a hull at hand."""
+    """As ``wave_answers``, for a hull at hand.
+
+    Raises:
+        SolverFailure: the solver cannot give a number, or is not made for one of these Froude numbers.
+    """
     if level == 1:
         table = hull.offset_table()
         coefficients = michell.wave_coefficients(
@@ -133,9 +141,15 @@ def solve_waves(hull: Hull, level: int, froude_numbers: Sequence[float]) -> tupl
     # Loaded when it is needed: its compiled kernels take a second to load, and level 1 must answer at once.
     from hpsop_core.hydro import rankine
 
-    result = rankine.solve(hull, froude_numbers)
+    try:
+        result = rankine.solve(hull, froude_numbers)
+    except InputError as problem:
+        # Froude numbers follow from a design's length at fixed speed: out of range is that design's failure.
+        raise SolverFailure("rankine", str(problem)) from problem
     return tuple(
-        WaveAnswer(point.wave_coefficient, point.wave_coefficient_pressure, point.sinkage, point.trim)
+        WaveAnswer(
+            point.wave_coefficient, point.wave_coefficient_pressure, point.sinkage, point.trim, result.warnings
+        )
         for point in result.conditions
     )
 
@@ -181,4 +195,5 @@ def resistance_point(
         sinkage=wave.sinkage,
         trim=wave.trim,
         wave_calibration=wave_calibration,
+        warnings=wave.warnings,
     )

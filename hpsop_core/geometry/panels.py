@@ -12,6 +12,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hpsop_core.errors import SolverFailure
 from hpsop_core.geometry.hull import Hull
 from hpsop_core.typing_aliases import Array
 
@@ -23,7 +24,8 @@ WATERLINE_POINTS = 801
 # own images. (The reference ship's bulb is 0.8 % below.)
 CROWN_COVER = 0.005
 # A wet transom is closed by a tail of this many half-breadths, ending no further aft of AP than a part of the length.
-TAIL_SLENDERNESS, TAIL_REACH = 6.0, 0.1
+# Blunter than the least slenderness it would make more waves than the hull.
+TAIL_SLENDERNESS, TAIL_REACH, LEAST_TAIL_SLENDERNESS = 6.0, 0.3, 4.0
 TAIL_PANELS = 8
 
 
@@ -113,8 +115,20 @@ def _tail_points(edge: Array, draft: float, length: float) -> Array:
 
     Returns:
         (TAIL_PANELS + 1, n, 3), from the point forward to the transom.
+
+    Raises:
+        SolverFailure: the transom is too wide for a tail of this hull's length.
     """
-    reach = max(min(TAIL_SLENDERNESS * float(edge[-1, 1]), float(edge[-1, 0]) + TAIL_REACH * length), 1e-3 * length)
+    half_breadth = float(edge[-1, 1])
+    room = float(edge[-1, 0]) + TAIL_REACH * length
+    if room < LEAST_TAIL_SLENDERNESS * half_breadth:
+        raise SolverFailure(
+            "rankine",
+            f"the wet transom is {2.0 * half_breadth:.4g} m wide at the waterline: the water behind it cannot be "
+            f"closed smoothly within {room:.4g} m; this solver takes wet transoms up to "
+            f"{2.0 * room / LEAST_TAIL_SLENDERNESS:.4g} m wide on this length, and dry ones (a smaller draft)",
+        )
+    reach = max(min(TAIL_SLENDERNESS * half_breadth, room), 1e-3 * length)
     s = np.linspace(1.0, 0.0, TAIL_PANELS + 1)[:, None]
     shrink = 1.0 - s**2
     return np.stack(
@@ -133,6 +147,9 @@ def hull_panels(hull: Hull, lengthwise: int, girthwise: int) -> HullPanels:
         hull: the hull.
         lengthwise: panels along a patch that spans more than half of the length; short patches get their share.
         girthwise: panels from keel to waterline of such a patch.
+
+    Raises:
+        SolverFailure: a wet transom too wide to be closed.
     """
     quads: list[Array] = []
     blocks: list[tuple[str, int, int]] = []
@@ -164,7 +181,7 @@ def hull_panels(hull: Hull, lengthwise: int, girthwise: int) -> HullPanels:
         waterline = np.concatenate([aft, waterline])
         warnings = (
             f"wet transom {2 * start[1]:.4g} m wide and {hull.draft - tail[-1, 0, 2]:.4g} m deep: closed by a tail of "
-            f"{start[0] - stop[0]:.4g} m in the wave calculation; the resistance of the transom itself is not included",
+            f"{start[0] - stop[0]:.4g} m in the wave calculation, whose waves count; the transom's own drag does not",
         )
     measured = hull.hydrostatics
     return HullPanels(

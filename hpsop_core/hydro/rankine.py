@@ -59,6 +59,8 @@ SOLVER_VERSION = "rankine-1"
 # Panels off their own plane by this part of their diagonal: on the plane itself the solid angle has two values.
 COLLOCATION_LIFT = 1e-5
 REFINEMENTS = 3
+# Surface cells on a transverse wave of 2 pi Fn^2 L below which a result carries a warning.
+FEWEST_CELLS = 10.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -315,10 +317,12 @@ def _solve(body: HullPanels, numbers: tuple[float, ...], settings: RankineSettin
 
     grid = surface_grid(waterline, settings)
     system = surface_system(base, grid)
+    grid_step = float(np.ptp(waterline[:, 0])) / settings.columns_along_hull
     gravity = 1.0 / np.array(numbers) ** 2
     on_surface = np.stack([surface_strengths(system, float(g)) for g in gravity], axis=1)
     on_hull = base.strengths[:, None] - system.elimination @ on_surface
-    by_plane = plane_resistance(wave_planes(grid, settings), panels, on_hull, grid, on_surface, gravity)
+    tail_end = max(0.0, float(waterline[-1, 0]) - 1.0) if body.tail_panels else 0.0
+    by_plane = plane_resistance(wave_planes(grid, settings, tail_end), panels, on_hull, grid, on_surface, gravity)
     by_plane *= 2.0 / reference
 
     disturbance = [
@@ -347,13 +351,13 @@ def _solve(body: HullPanels, numbers: tuple[float, ...], settings: RankineSettin
             fields=shown,
         )
         by_both = condition.wave_coefficient, condition.wave_coefficient_pressure
-        check_answer(number, *by_both, elevation, settings.columns_along_hull)
+        check_answer(number, *by_both, elevation, grid_step)
         conditions.append(condition)
     return RankineResult(
         conditions=tuple(conditions),
         double_body_drag=drag,
         unknowns=panels.count + len(grid.area),
-        warnings=body.warnings + _warnings(numbers, settings),
+        warnings=body.warnings + _warnings(numbers, grid_step),
         settings=settings,
     )
 
@@ -370,14 +374,14 @@ def _fields(body: HullPanels, grid: SurfaceGrid, elevation: Array, pressure: Arr
     )
 
 
-def _warnings(numbers: Sequence[float], settings: RankineSettings) -> tuple[str, ...]:
-    """Cells per transverse wave, where they are few."""
+def _warnings(numbers: Sequence[float], step: float) -> tuple[str, ...]:
+    """Cells of length ``step`` (in Lpp) per transverse wave, where they are few."""
     lines = []
     for number in numbers:
-        cells = 2.0 * np.pi * number**2 * settings.columns_along_hull
-        if cells < 6.0:
+        cells = 2.0 * np.pi * number**2 / step
+        if cells < FEWEST_CELLS:
             lines.append(
                 f"Froude number {number:g}: {cells:.1f} cells on a transverse wave of 2 pi Fn^2 L = "
-                f"{2 * np.pi * number**2:.3f} L; the waves come out too small, use finer settings"
+                f"{2 * np.pi * number**2:.3f} L; the waves come out too small"
             )
     return tuple(lines)

@@ -17,6 +17,7 @@ from hpsop_core.typing_aliases import Array
 LEAST_FROUDE, LARGEST_FROUDE = 0.1, 0.5
 # A port-side hull of single-valued half-breadths has normals to port: the parent's least is -2e-4.
 LEAST_NORMAL = -0.05
+STEEPEST_BOTTOM = -0.8
 # Flat panels lose volume by their chords: 0.7 % on the parent at the default mesh.
 VOLUME_MISMATCH = 0.06
 # Strengths of a sphere reach 1.5; of the parent's counter and boss about 3.
@@ -83,12 +84,15 @@ def check_panels(body: HullPanels, panels: SourcePanels) -> None:
         raise SolverFailure(
             "rankine", f"a panel collapses ({_place(body, worst)}): two stations or lines of the hull meet"
         )
-    if float(np.min(panels.normal[:, 1])) < LEAST_NORMAL:
-        worst = int(np.argmin(panels.normal[:, 1]))
+    # A bottom may be hollow; a side may not look inward.
+    inward = np.where(panels.normal[:, 2] < STEEPEST_BOTTOM, 0.0, panels.normal[:, 1])
+    if float(np.min(inward)) < LEAST_NORMAL:
+        worst = int(np.argmin(inward))
         raise SolverFailure(
             "rankine",
             f"the form is folded: a panel faces inward ({_place(body, worst)}, "
-            f"normal {panels.normal[worst, 1]:.2f} to port)",
+            f"normal {panels.normal[worst, 1]:.2f} to port); smooth it, or give stations and waterlines closer "
+            "together there",
         )
     own = slice(0, panels.count - body.tail_panels)
     # The flux of (0, y, 0) needs no closed ends.
@@ -120,10 +124,8 @@ def check_base_flow(strengths: Array, flow: Array, drag: float) -> None:
         raise SolverFailure("rankine", f"the double body has a drag coefficient of {drag:.2e}, which should be zero")
 
 
-def check_answer(
-    froude_number: float, by_plane: float, by_pressure: float, elevation: Array, columns_along_hull: int
-) -> None:
-    """Refuse a wave resistance that is none.
+def check_answer(froude_number: float, by_plane: float, by_pressure: float, elevation: Array, step: float) -> None:
+    """Refuse a wave resistance that is none; ``step`` is the length of the surface's cells along the hull in Lpp.
 
     Raises:
         SolverFailure: not finite, not positive, or beyond linear theory.
@@ -131,11 +133,11 @@ def check_answer(
     if not (np.isfinite(by_plane) and np.isfinite(by_pressure) and np.all(np.isfinite(elevation))):
         raise SolverFailure("rankine", f"the solution at Froude number {froude_number:g} is not finite")
     if by_plane <= 0.0:
-        cells = 2.0 * np.pi * froude_number**2 * columns_along_hull
+        cells = 2.0 * np.pi * froude_number**2 / step
         raise SolverFailure(
             "rankine",
             f"wave coefficient {by_plane:.2e} at Froude number {froude_number:g} is not positive; a transverse "
-            f"wave has {cells:.1f} cells of the surface grid: take finer settings or a higher speed",
+            f"wave has {cells:.1f} cells of the surface grid: take a higher speed",
         )
     if by_plane > LARGEST_WAVE_COEFFICIENT:
         raise SolverFailure(

@@ -9,6 +9,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
+from hpsop_core.errors import SolverFailure
 from hpsop_core.hydro.influence_hull import SourcePanels, panel_velocities, point_velocities
 from hpsop_core.hydro.rankine_grid import SurfaceGrid
 from hpsop_core.hydro.rankine_settings import RankineSettings
@@ -30,8 +31,19 @@ class WavePlanes:
     depth_weight: Array
 
 
-def wave_planes(grid: SurfaceGrid, settings: RankineSettings) -> WavePlanes:
-    """The planes behind the ship; rows are the grid's own, so that lattice ripples of the sources cancel."""
+def wave_planes(grid: SurfaceGrid, settings: RankineSettings, tail_end: float = 0.0) -> WavePlanes:
+    """The planes behind the ship; rows are the grid's own, so that lattice ripples of the sources cancel.
+
+    Args:
+        grid: of the surface.
+        settings: where the planes are, aft of AP.
+        tail_end: how far aft of AP the closure of a wet transom ends; the planes start there instead.
+
+    Raises:
+        SolverFailure: the tail pushes a plane out of the domain.
+    """
+    if tail_end + max(settings.planes) >= settings.downstream:
+        raise SolverFailure("rankine", f"the tail behind the transom, {tail_end:.3f} L, leaves no room for the planes")
     stretch = 4.0
     edges = -settings.plane_depth * np.expm1(stretch * np.linspace(0.0, 1.0, settings.plane_layers + 1))
     edges /= np.expm1(stretch)
@@ -41,7 +53,7 @@ def wave_planes(grid: SurfaceGrid, settings: RankineSettings) -> WavePlanes:
     root = 1.0 / np.sqrt(3.0)
     depths = np.stack([middle + root * half, middle - root * half], axis=1).reshape(-1)
     weight = np.repeat(half, 2)
-    x = 1.0 + np.array(settings.planes)
+    x = 1.0 + tail_end + np.array(settings.planes)
     z = np.concatenate([[0.0], depths])
     mesh = np.meshgrid(x, grid.row_middle, z, indexing="ij")
     return WavePlanes(np.stack(mesh, axis=-1), grid.row_width, weight)

@@ -17,6 +17,8 @@ class Check:
         source: where the reference comes from.
         tolerance: the tolerance in words, with its kind, for example "0.5 % relative" or "within 2.5 to 4.0e-4".
         passed: whether the tolerance holds.
+
+    numpy's scalars become Python's own, which every JSON writer knows.
     """
 
     group: str
@@ -26,6 +28,10 @@ class Check:
     source: str
     tolerance: str
     passed: bool
+
+    def __post_init__(self) -> None:
+        for name, kind in (("computed", float), ("reference", float), ("passed", bool)):
+            object.__setattr__(self, name, kind(getattr(self, name)))
 
 
 def relative_check(

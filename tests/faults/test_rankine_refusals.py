@@ -7,13 +7,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
+from hpsop_core import evaluate, load_case
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.geometry.analytic_bodies import wigley_panels
 from hpsop_core.geometry.form import LongitudinalShift
 from hpsop_core.geometry.hull import load_parent_hull
 from hpsop_core.geometry.hydrostatics import volume_and_centre
 from hpsop_core.geometry.panels import HullPanels, grid_quads
-from hpsop_core.hydro.rankine import RankineSettings, solve, solve_panels
+from hpsop_core.hydro.rankine import RankineSettings, solve, solve_panels, solver_axes
+from hpsop_core.hydro.rankine_checks import check_panels
 
 COARSE = RankineSettings().refined(0.7)
 
@@ -100,6 +102,28 @@ def test_stations_in_the_wrong_order() -> None:
     points[..., 1] = 0.05 * (1 - (2 * x[:, None] - 1) ** 2) * (1 - (1 - z / 0.0625) ** 2)
     with pytest.raises(SolverFailure, match="folded"):
         solve_panels(replace(wigley(), quads=grid_quads(points), blocks=(("w", 8, 4),)), [0.3], COARSE)
+
+
+def test_hollow_bottom_is_no_fold() -> None:
+    # A bottom that rises by 15 degrees towards the centreplane faces 0.26 inward, and is a hull all the same.
+    sound = wigley()
+    floor = np.array([[0.0, 0.02], [0.015, 0.016], [0.03, 0.012]])
+    x = np.linspace(0.3, 0.7, 5)
+    points = np.zeros((5, 3, 3))
+    points[..., 0], points[..., 1], points[..., 2] = x[:, None], floor[:, 0], floor[:, 1]
+    panels, _ = solver_axes(replace(sound, quads=np.concatenate([sound.quads, grid_quads(points)])))
+    assert np.min(panels.normal[:, 1]) < -0.2
+    check_panels(replace(sound, quads=np.concatenate([sound.quads, grid_quads(points)])), panels)
+
+
+def test_froude_number_of_a_design_outside_the_range_is_a_failed_evaluation() -> None:
+    # At fixed speed a shorter design is faster: 0.5 sqrt(355/331) = 0.518.
+    case = load_case("dtc-p4119")
+    case = replace(case, conditions=replace(case.conditions, froude_numbers=(0.22, 0.5)))
+    design = replace(case.initial.variables, length_to_breadth=6.5)
+    evaluation = evaluate(case, design, 2)
+    assert evaluation.status == "failed"
+    assert "Froude number 0.51" in evaluation.reason
 
 
 def test_waterline_that_does_not_fit_the_water() -> None:
