@@ -62,8 +62,14 @@ def picture_body_plan(hull: Hull, to: Path) -> None:
     axes.axvline(0.0, color="#718096", linewidth=0.8)
     axes.plot(0.0, hull.shaft_height, "o", markersize=4, color="#c05621")
     axes.set(xlabel="half-breadth [m], afterbody left, forebody right", ylabel="height [m]")
+    axes.set_ylim(top=1.09 * hull.parent.deck_height)
     axes.set_title(f"{hull.parent.name.upper()} body plan, {hull.length:g} x {hull.breadth:g} x {hull.draft:g} m")
     axes.grid(alpha=0.25)
+    # Sections that part at the deck carry their x in percent of the length; the others are named in the documentation.
+    for x, lines in zip(_stations(hull), hull.sections(np.array(_stations(hull)), 3), strict=True):
+        if x > 0.89 * hull.length:
+            axes.annotate(f"{100 * x / hull.length:.3g}", (lines[-1][-1, 1], hull.parent.deck_height), fontsize=7,
+                          rotation=60, ha="left", va="bottom", xytext=(0, 1), textcoords="offset points")  # fmt: skip
     figure.tight_layout()
     figure.savefig(to)
     plt.close(figure)
@@ -96,8 +102,9 @@ def picture_profile_and_patches(hull: Hull, to: Path) -> None:
     plan.plot(waterline[:, 0], waterline[:, 1], color="#2b6cb0")
     plan.set(xlabel="x from the aft perpendicular [m]", ylabel="y [m]", title="design waterline")
     plan.grid(alpha=0.25)
-    whole.set_title("  ".join(f"{patch.name}" for patch in hull.patches), fontsize=8)
-    figure.tight_layout()
+    keys = [plt.Line2D([], [], color=_COLOURS.get(patch.name, "#4a5568"), label=patch.name) for patch in hull.patches]
+    figure.legend(handles=keys, loc="upper center", ncols=len(keys), fontsize=8, frameon=False)
+    figure.tight_layout(rect=(0.0, 0.0, 1.0, 0.965))
     figure.savefig(to)
     plt.close(figure)
 

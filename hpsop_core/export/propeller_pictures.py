@@ -12,14 +12,14 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
-import trimesh
 
 from hpsop_core.errors import InputError
+from hpsop_core.export.hull_shading import ShadedPart, render
 from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.geometry.hull_mesh import hull_mesh
+from hpsop_core.geometry.hull_mesh import hull_view_parts
 from hpsop_core.geometry.propeller import Propeller, load_propeller, propeller_family
-from hpsop_core.geometry.propeller_clearance import propeller_clearance, propeller_placement
-from hpsop_core.geometry.propeller_mesh import propeller_mesh
+from hpsop_core.geometry.propeller_clearance import baseline_clearance, propeller_clearance, propeller_placement
+from hpsop_core.geometry.propeller_mesh import propeller_view_parts
 from hpsop_core.geometry.propeller_sections import cosine_chord_fractions
 from hpsop_core.geometry.propeller_surface import section_points
 from hpsop_core.hydro import lifting_line
@@ -29,7 +29,7 @@ from hpsop_core.validation.propeller_level1 import MODEL_DIAMETER, reference_row
 
 _BRONZE = (0.83, 0.62, 0.28)
 _PAINT = (0.62, 0.28, 0.25)
-_STERN_LIGHT = (-0.4, 0.8, 0.45)
+_ABOVE = (0.36, 0.52, 0.70)
 _DPI = 110
 
 
@@ -44,30 +44,13 @@ def _pyplot() -> Any:
     return pyplot
 
 
-def _shaded(
-    axes: Any,
-    triangles: Array,
-    normals: Array,
-    colour: Sequence[float],
-    toward_light: Sequence[float] = (0.55, 0.25, 0.8),
-    zorder: int = 1,
-) -> None:
-    """Add flat-shaded triangles to a 3D drawing."""
-    from mpl_toolkits.mplot3d.art3d import Poly3DCollection  # type: ignore[import-untyped]
-
-    light = np.array(toward_light) / np.linalg.norm(toward_light)
-    shade = 0.62 + 0.38 * (normals @ light)
-    colours = np.clip(shade[:, None] * np.array(colour), 0.0, 1.0)
-    axes.add_collection3d(
-        Poly3DCollection(triangles, facecolors=colours, edgecolors=colours, linewidths=0.3, zorder=zorder)
-    )
-
-
-def _bare(axes: Any, low: Array, high: Array) -> None:
-    for name, a, b in zip("xyz", low, high, strict=True):
-        getattr(axes, f"set_{name}lim")(a, b)
-    axes.set_box_aspect(high - low)
-    axes.set_axis_off()
+def _parts(propeller: Propeller, placement: Array | None = None) -> list[ShadedPart]:
+    """Blades and hub of a propeller for the renderer, where wanted in ship axes."""
+    parts = []
+    for vertices, faces in propeller_view_parts(propeller).values():
+        placed = vertices if placement is None else vertices @ placement[:3, :3].T + placement[:3, 3]
+        parts.append(ShadedPart(placed, faces, _BRONZE))
+    return parts
 
 
 def family_picture(file: Path) -> None:
@@ -80,18 +63,15 @@ def family_picture(file: Path) -> None:
         ("Z 5, EAR 0.607", propeller_family(parent, 2.0, 5)),
         ("Z 7, EAR 0.607", propeller_family(parent, 2.0, 7)),
         ("Z 3, EAR 1.0", propeller_family(parent, 2.0, 3, 1.0, 1.0)),
-        ("Z 5, EAR 1.0", propeller_family(parent, 2.0, 5, 1.05, 1.0)),
+        ("Z 5, EAR 1.0, pitch x 1.05", propeller_family(parent, 2.0, 5, 1.05, 1.0)),
     ]
-    figure = pyplot.figure(figsize=(11.0, 7.4))
-    for place, (title, propeller) in enumerate(members, start=1):
-        axes = figure.add_subplot(2, 3, place, projection="3d", proj_type="ortho")
-        mesh = propeller_mesh(propeller, "view")
-        _shaded(axes, mesh.triangles, mesh.face_normals, _BRONZE)
-        _bare(axes, np.full(3, -0.78), np.full(3, 0.78))
-        axes.view_init(18.0, 38.0)
-        axes.set_title(title, fontsize=11, y=0.94)
-    figure.subplots_adjust(0.0, 0.0, 1.0, 0.95, 0.0, 0.02)
-    figure.savefig(file, dpi=80, bbox_inches="tight")
+    figure, axes = pyplot.subplots(2, 3, figsize=(11.0, 7.6))
+    for (title, propeller), place in zip(members, axes.flat, strict=True):
+        place.imshow(render(_parts(propeller), 38.0, 18.0, ((0.0, 0.0, 0.0), 1.12), 340, 340))
+        place.set_title(title, fontsize=11)
+        place.set_axis_off()
+    figure.tight_layout()
+    figure.savefig(file, dpi=90)
     pyplot.close(figure)
 
 
@@ -212,41 +192,30 @@ def loading_picture(file: Path) -> None:
     pyplot.close(figure)
 
 
-def _behind_hull(axes: Any, propeller: Propeller) -> float:
-    """Draw stern and propeller, return the tip clearance."""
-    hull = load_parent_hull().transform(355.0, 51.0, 14.5)
-    ship = hull_mesh(hull, "export")
-    corners = ship.triangles
-    near = (corners[..., 0].min(axis=1) < 24.0) & (corners[..., 2].min(axis=1) < 16.0)
-    # faces across the picture's edge are squeezed on it
-    cut = np.minimum(corners[near], np.array([24.0, np.inf, 16.0]))
-    _shaded(axes, cut, ship.face_normals[near], _PAINT, _STERN_LIGHT)
-    screw: trimesh.Trimesh = propeller_mesh(propeller, "view")
-    screw.apply_transform(propeller_placement(hull, propeller))
-    _shaded(axes, screw.triangles, screw.face_normals, _BRONZE, _STERN_LIGHT, 2)
-    return propeller_clearance(hull, propeller)
-
-
 def aperture_picture(file: Path) -> None:
     """The parent propeller in the aperture, from the side and from astern."""
     pyplot = _pyplot()
-    from matplotlib.transforms import Bbox
-
     propeller = propeller_family(load_propeller(), 9.0, 3)
-    figure = pyplot.figure(figsize=(12.0, 5.2))
-    for left, elevation, azimuth, title in (
-        (-0.06, 0.0, 90.0, "from port"),
-        (0.46, 8.0, 148.0, "from astern and port"),
+    hull = load_parent_hull().transform(355.0, 51.0, 14.5)
+    ship = hull_view_parts(hull, "export")
+    parts = [ShadedPart(*ship[name], colour) for name, colour in (("underwater", _PAINT), ("topsides", _ABOVE))]
+    parts += _parts(propeller, propeller_placement(hull, propeller))
+    clearance = propeller_clearance(hull, propeller)
+    figure, axes = pyplot.subplots(1, 2, figsize=(12.0, 5.0))
+    for place, title, azimuth, elevation, focus in (
+        (axes[0], "from port", 90.0, 0.0, ((11.0, 0.0, 8.2), 14.5)),
+        (axes[1], "from astern and port", 148.0, -8.0, ((6.0, 0.0, 8.2), 14.5)),
     ):
-        axes = figure.add_axes((left, -0.12, 0.62, 1.2), projection="3d", proj_type="ortho")
-        # the propeller stands before the hull in both views; sorted by their middles they would not
-        axes.computed_zorder = False
-        clearance = _behind_hull(axes, propeller)
-        _bare(axes, np.array([-7.0, -10.0, 0.0]), np.array([24.0, 10.0, 16.0]))
-        axes.view_init(elevation, azimuth)
-        axes.set_title(f"{title}; D 9 m, tip clearance {clearance:.2f} m", fontsize=10, y=0.84)
-    # 3D axes keep wide margins: store the part of the sheet that holds something
-    figure.savefig(file, dpi=90, bbox_inches=Bbox([[0.3, 1.1], [12.0, 4.9]]))
+        place.imshow(render(parts, azimuth, elevation, focus, 580, 400))
+        place.set_title(title, fontsize=10)
+        place.set_axis_off()
+    figure.suptitle(
+        f"D {propeller.diameter:g} m, D/d {propeller.diameter / hull.draft:.3f}; tip clearance {clearance:.2f} m to "
+        f"the hull, {baseline_clearance(hull, propeller):.2f} m to the baseline",
+        fontsize=11,
+    )
+    figure.tight_layout()
+    figure.savefig(file, dpi=90)
     pyplot.close(figure)
 
 

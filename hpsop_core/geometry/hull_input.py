@@ -201,9 +201,10 @@ def _check_between(parent: ParentHull, name: str, x: Array, z: Array, begins: di
                 place = points[np.unravel_index(int(np.argmax(beyond)), beyond.shape)]
                 station = float(x[np.argmin(np.abs(x - place[0]))])
                 row = f" row {begins[station]}" if station in begins else ""
+                remedy = "add stations there" if begins else "is x forward, z up, and the draft right?"
                 raise InputError(
                     f"{name}{row}: near station {station:g} m the smooth surface ({patch}) swings "
-                    f"{float(beyond.max()):.3g} m {what} between the points; add stations there"
+                    f"{float(beyond.max()):.3g} m {what} between the points; {remedy}"
                 )
 
 
@@ -243,7 +244,7 @@ def parent_hull_from_stl(path: Path | str, unit: str, draft: float, length: floa
     except Exception as problem:
         raise InputError(f"{path.name}: cannot be read as a mesh ({problem})") from problem
     if not isinstance(mesh, trimesh.Trimesh) or len(mesh.faces) == 0:
-        raise InputError(f"{path.name}: holds no triangles")
+        raise InputError(f"{path.name}: holds no triangles; give a closed STL of the hull")
     mesh.merge_vertices()
     if not mesh.is_watertight:
         edges = np.sort(mesh.edges, axis=1)
@@ -252,10 +253,14 @@ def parent_hull_from_stl(path: Path | str, unit: str, draft: float, length: floa
     mesh = trimesh.Trimesh(mesh.vertices * UNITS[unit], mesh.faces, process=False)
     low, high = mesh.bounds
     if abs(low[1] + high[1]) > 0.02 * (high[1] - low[1]):
-        raise InputError(f"{path.name}: y runs from {low[1]:g} to {high[1]:g} m; it must be symmetric about y = 0")
+        raise InputError(
+            f"{path.name}: y runs from {low[1]:g} to {high[1]:g} m; it must be symmetric about y = 0 "
+            "(x forward, y to port, z up)"
+        )
     if not 0.75 * length < high[0] - low[0] < 1.5 * length:
         raise InputError(
-            f"{path.name}: the mesh is {high[0] - low[0]:g} m long in unit '{unit}' but the length is {length:g} m"
+            f"{path.name}: the mesh is {high[0] - low[0]:g} m long in unit '{unit}' but the length is {length:g} m; "
+            "state the mesh's own unit, or its length between perpendiculars"
         )
     if draft > high[2]:
         raise InputError(f"{path.name}: the draft {draft:g} m is above the mesh's top at {high[2]:g} m")
