@@ -68,10 +68,10 @@ def evaluation_task(
     pin_threads()
     started = time.perf_counter()
     try:
-        evaluation = evaluate(case, variables, level, reference)
-        fault = _not_a_number(evaluation)
+        data = evaluate(case, variables, level, reference).as_dict()
+        fault = _not_a_number(data)
         if not fault:
-            return json_text(evaluation.as_dict())
+            return json_text(data)
         stage, reason = "check", fault
     except SolverFailure as failure:
         stage, reason = failure.stage, failure.reason
@@ -108,13 +108,13 @@ def _one_line(error: BaseException) -> str:
     return text if isinstance(error, SolverFailure) else f"{name}: {text}" if text else name
 
 
-def _not_a_number(evaluation: Evaluation) -> str:
-    """Where an evaluation that calls itself ok holds something that is no finite number, or ""."""
-    if evaluation.ok:
+def _not_a_number(data: dict[str, Any]) -> str:
+    """Where an evaluation holds something that is no finite number, or misses an objective though ok; else ""."""
+    if data["status"] == "ok":
         for name in ("f1", "f2"):
-            if evaluation.objectives.get(name) is None:
+            if data["objectives"].get(name) is None:
                 return f"objectives.{name} is missing"
-    return _search(evaluation.as_dict(), "")
+    return _search(data, "")
 
 
 def _search(value: Any, path: str) -> str:
