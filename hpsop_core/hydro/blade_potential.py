@@ -123,9 +123,8 @@ class SurfaceGradient:
 
     @classmethod
     def on(cls, collocation: Array) -> SurfaceGradient:
-        """For collocation points (n, m, 3), n and m at least 3."""
-        a = np.gradient(collocation, axis=0, edge_order=2)
-        b = np.gradient(collocation, axis=1, edge_order=2)
+        """For collocation points (n, m, 3), n and m at least 2; along an index with two points it is of first order."""
+        a, b = _index_derivative(collocation, 0), _index_derivative(collocation, 1)
         aa, ab, bb = (a * a).sum(-1), (a * b).sum(-1), (b * b).sum(-1)
         det = np.maximum(aa * bb - ab * ab, 1e-300)
         dual_i = (bb[..., None] * a - ab[..., None] * b) / det[..., None]
@@ -134,11 +133,14 @@ class SurfaceGradient:
 
     def of(self, potential: Array) -> Array:
         """Gradient (n, m, 3, k) of k potentials (n, m, k)."""
-        along_i = np.gradient(potential, axis=0, edge_order=2)
-        along_j = np.gradient(potential, axis=1, edge_order=2)
+        along_i, along_j = _index_derivative(potential, 0), _index_derivative(potential, 1)
         return np.asarray(
             self.dual_i[..., None] * along_i[:, :, None, :] + self.dual_j[..., None] * along_j[:, :, None, :]
         )
+
+
+def _index_derivative(values: Array, axis: int) -> Array:
+    return np.asarray(np.gradient(values, axis=axis, edge_order=2 if values.shape[axis] > 2 else 1))
 
 
 def tangential(vector: Array, normal: Array) -> Array:

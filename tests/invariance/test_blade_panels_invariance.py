@@ -201,6 +201,17 @@ def test_surface_pressure_is_a_closed_body_with_the_right_thrust() -> None:
     assert one.quads.shape[0] * 3 == surface.quads.shape[0]
 
 
+@pytest.mark.parametrize("blades", [2, 5, 7])
+def test_pressures_for_any_number_of_blades(blades: int) -> None:
+    """With many blades a sector of the hub is two panels wide."""
+    result = solve(propeller_family(load_propeller(), 9.0, blades), [0.7], SectionDrag.full_scale())
+    surface = result.surface_pressure(0.7)
+    assert np.all(np.isfinite(surface.pressure_coefficient))
+    # Cp is at most 1 on the speed of the point, a little more by differences over a coarse nose
+    assert np.max(surface.pressure_coefficient[surface.blade >= 0]) < 1.1
+    assert set(np.unique(surface.blade)) == {-1, *range(blades)}
+
+
 def test_result_travels_between_processes() -> None:
     result = solve(propeller_family(load_propeller(), 9.0, 3), [0.7], SectionDrag.full_scale())
     again = pickle.loads(pickle.dumps(result))  # noqa: S301 our own bytes
