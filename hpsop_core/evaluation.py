@@ -461,7 +461,7 @@ def _constraints(
         form = max(limits.booked_block_coefficient_lower - block, block - limits.booked_block_coefficient_upper)
     elif physics.hull.clipped:
         # At least visibly infeasible: the form is not the one that was asked for, even where its volume is close.
-        form = max(abs(physics.effective_volume / asked - 1.0), 1e-4)
+        form = max(abs(physics.effective_volume / asked - 1.0), _centre_missed(physics.hull, variables), 1e-4)
     else:
         form = 0.0
     cavitation_excess = None
@@ -478,6 +478,13 @@ def _constraints(
         "propeller_clearance": -min(clearance, baseline_clearance(physics.hull, physics.propeller))
         / physics.propeller.diameter,
     }
+
+
+def _centre_missed(hull: Hull, variables: DesignVariables) -> float:
+    """How far the centre of buoyancy of a clipped form lies from the asked place, as a fraction of the length."""
+    parent = hull.parent
+    own = parent.hydrostatics.longitudinal_centre_of_buoyancy / parent.length + variables.buoyancy_centre_shift
+    return abs(hull.hydrostatics.longitudinal_centre_of_buoyancy / hull.length - own)
 
 
 def _open_water_curve(curve: PropellerCurve) -> OpenWaterCurve:

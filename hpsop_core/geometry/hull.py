@@ -254,11 +254,7 @@ class ParentHull:
         measured = hydrostatics(quadrature, shift, scale, (length, breadth, draft))
         if clipped:
             asked = volume * scale[0] * scale[1] * scale[2]
-            warnings = (
-                f"form clipped at dx'/dx = {LEAST_STRETCH}: block coefficient {measured.block_coefficient:.4f} "
-                f"instead of {asked / (length * breadth * draft):.4f}, displaced volume "
-                f"{measured.displaced_volume:.0f} m3 instead of {asked:.0f} m3",
-            )
+            warnings = (_clipped_line(measured, asked, solver.centre * scale[0] + buoyancy_centre_shift),)
         elif not centre_held:
             own = self._form_solver.centre * scale[0] + buoyancy_centre_shift
             moved = measured.longitudinal_centre_of_buoyancy - own
@@ -267,6 +263,21 @@ class ParentHull:
                 "from the asked place",
             )
         return Hull(self, length, breadth, draft, shift, measured, clipped, (*warnings, *self.warnings))
+
+
+def _clipped_line(measured: Hydrostatics, volume: float, centre: float) -> str:
+    """What a clipped form has reached instead of the asked volume (m3) and centre of buoyancy (m from AP)."""
+    parts = [f"form clipped at dx'/dx = {LEAST_STRETCH}:"]
+    if abs(measured.displaced_volume / volume - 1.0) > 1e-5:
+        block = measured.block_coefficient * volume / measured.displaced_volume
+        parts.append(
+            f"block coefficient {measured.block_coefficient:.4f} instead of {block:.4f}, displaced volume "
+            f"{measured.displaced_volume:.6g} m3 instead of {volume:.6g} m3;"
+        )
+    reached = measured.longitudinal_centre_of_buoyancy
+    if abs(reached - centre) > 1e-5 * abs(centre):
+        parts.append(f"centre of buoyancy {reached:.5g} m from AP instead of {centre:.5g} m;")
+    return " ".join(parts).rstrip(";")
 
 
 @dataclass(frozen=True, eq=False)

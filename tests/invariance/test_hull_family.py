@@ -58,6 +58,11 @@ def test_beyond_the_range_the_form_is_clipped_and_says_so(parent: ParentHull, bl
     assert hull.clipped
     assert hull.shift.least_stretch() > LEAST_STRETCH
     assert len(hull.warnings) == 1 and "clipped" in hull.warnings[0] and "\n" not in hull.warnings[0]
+    # What was missed stands in the line, and only that.
+    hydro, own = hull.hydrostatics, parent.hydrostatics.longitudinal_centre_of_buoyancy
+    missed = abs(hydro.longitudinal_centre_of_buoyancy - own - fraction * LENGTH) > 0.01
+    assert ("centre of buoyancy" in hull.warnings[0]) == missed
+    assert ("block coefficient" in hull.warnings[0]) == (abs(hydro.block_coefficient - block) > 1e-5)
     # The volume in the hydrostatics is the one of the geometry, not the asked one.
     assert abs(hull.hydrostatics.block_coefficient - block) > 1e-3 or abs(fraction) > 0.01
 
