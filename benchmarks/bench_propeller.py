@@ -7,10 +7,12 @@ from __future__ import annotations
 
 import time
 from collections.abc import Callable
+from itertools import count as count_up
 
 import numpy as np
 
 from hpsop_core.geometry.hull import load_parent_hull
+from hpsop_core.geometry.hull_mesh import hull_view_parts
 from hpsop_core.geometry.propeller import load_propeller, propeller_family
 from hpsop_core.geometry.propeller_clearance import propeller_clearance
 from hpsop_core.geometry.propeller_mesh import propeller_mesh, propeller_view_parts
@@ -52,6 +54,17 @@ def main() -> None:
             print(f"  {name:6s} mesh, {count:6d} faces {elapsed:7.2f} ms")
         print(f"  blade as NURBS            {best(lambda p=propeller: blade_nurbs(p), 5):7.2f} ms")
         print(f"  clearance to the hull     {best(lambda p=propeller: propeller_clearance(hull, p)):7.2f} ms")
+    ships, steps = load_parent_hull(), count_up()
+
+    def new_design() -> None:
+        """Another hull and another propeller at every call, so that nothing of the last one helps."""
+        step = 1e-3 * next(steps)
+        ship = ships.transform(350.0 + step, 50.0, 14.2, 165_000.0 + step, 0.5)
+        hull_view_parts(ship, "view")
+        propeller_view_parts(propeller_family(parent, 9.0 + step, 5, 1.0, 0.6 + step), "view")
+
+    print("goal: view meshes of a new hull and propeller <= 30 ms, their geometry and hydrostatics included")
+    print(f"  new design to meshes      {best(new_design):7.2f} ms")
 
 
 if __name__ == "__main__":
