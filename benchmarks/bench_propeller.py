@@ -1,4 +1,4 @@
-"""Times of the propeller's geometry and of the lifting line; best of several runs on one core.
+"""Times of the propeller's geometry and of the lifting line; least processor time of several runs.
 
 OPENBLAS_NUM_THREADS=1 python benchmarks/bench_propeller.py
 """
@@ -22,13 +22,13 @@ from hpsop_core.hydro.section_drag import SectionDrag
 
 
 def best(action: Callable[[], object], repeats: int = 20) -> float:
-    """Shortest time in ms."""
+    """Least processor time in ms (other programs on the machine count little)."""
     action()
     times = []
     for _ in range(repeats):
-        start = time.perf_counter()
+        start = time.process_time()
         action()
-        times.append(time.perf_counter() - start)
+        times.append(time.process_time() - start)
     return 1e3 * min(times)
 
 

@@ -92,7 +92,7 @@ def test_bad_pressure_requests() -> None:
 
 def test_extreme_loadings_stay_finite() -> None:
     """Far outside the tabulated wakes the pitch is held at their ends."""
-    result = solve(propeller_family(PARENT, 9.0, 3), [0.0, 0.05, 1.6], SectionDrag.full_scale()).open_water
+    result = solve(propeller_family(PARENT, 9.0, 3), [0.0, 0.05, 1.6, 2.0], SectionDrag.full_scale()).open_water
     assert np.all(np.isfinite(result.thrust_coefficient))
     assert np.all(np.diff(result.thrust_coefficient) < 0.0)
     assert result.thrust_coefficient[0] < 0.6
