@@ -8,7 +8,7 @@ import viser
 
 from explorer.bridge import Bridge, PageEvent
 from explorer.guard import guard
-from explorer.state import AppState, Session
+from explorer.state import LEFT_DOCK, AppState, Session
 from explorer.views.chart_tabs import chart_tabs
 from explorer.views.charts_view import ChartsView
 from explorer.views.compare_view import CompareView
@@ -25,7 +25,6 @@ from explorer.views.toolbar_view import ToolbarView
 from explorer.views.whatif_view import WhatIfView
 from hpsop_core.errors import HpsopError
 
-LEFT_WIDTH = 340
 _BRAND = (25, 113, 194)
 
 
@@ -35,7 +34,7 @@ def build_shared(app: AppState, server: viser.ViserServer) -> SettingsView:
     gui.configure_theme(show_logo=False, show_share_button=False, brand_color=_BRAND)
     gui.set_panel_label("hpsop")
     gui.main_panel.dock_left()
-    gui.main_panel.set_width(LEFT_WIDTH)
+    gui.main_panel.set_width(LEFT_DOCK)
     server.scene.set_up_direction("+z")
 
     def save(event: viser.GuiEvent[Any]) -> None:

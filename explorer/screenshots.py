@@ -1,7 +1,7 @@
-"""Pictures of the page in each of its states: ``python -m explorer.screenshots --to docs/pictures``.
+"""Pictures of the page in each of its states: ``python -m explorer.screenshots --to FOLDER``.
 
-It starts the real page in a folder of its own, runs a small real search, presses the buttons, and photographs. It needs
-Playwright's Python client and Chromium, as the browser tests do.
+It starts the real page in a folder of its own, runs a small real search (or shows a given run), presses the buttons as
+a person would, and photographs. It needs Playwright's Python client and Chromium, as the browser tests do.
 """
 
 from __future__ import annotations
@@ -9,6 +9,7 @@ from __future__ import annotations
 import argparse
 import io
 import shutil
+import sqlite3
 import sys
 import tempfile
 import time
@@ -19,7 +20,7 @@ from typing import Any
 from PIL import Image
 
 from explorer.app import Explorer, demonstration
-from explorer.run_picture import FINISHED, PAUSED
+from explorer.run_picture import FAILED, FINISHED, PAUSED
 from explorer.security import free_port
 from hpsop_core.case import load_case
 
@@ -34,14 +35,21 @@ _ARGUMENTS = (
     "--enable-unsafe-swiftshader",
 )
 _HIDE = ".mantine-Notifications-root{display:none!important}"
-_COLOURS = 200
+# A picture larger than this is saved with a palette: the repository carries them all.
+_LARGEST = 245_000
+# what docs/page.md and the README show
+_DOCS = frozenset(
+    {"ready", "running", "finished", "compare", "waves", "pressure", "propeller-pressure", "dark", "charts"}
+)
+_GAP = 14
 _SIZES = {"": (1366, 768), "-large": (1920, 1080)}
 
 
 class Photographer:
-    """One browser page and where its pictures go."""
+    """One browser page and where its pictures go; ``only`` some of them, or all for None."""
 
-    def __init__(self, page: Any, folder: Path, suffix: str) -> None:
+    def __init__(self, page: Any, folder: Path, suffix: str, only: frozenset[str] | None = None) -> None:
+        self._only = only
         self._page = page
         self._folder = folder
         self._suffix = suffix
@@ -58,11 +66,43 @@ class Photographer:
         time.sleep(pause)
 
     def take(self, name: str) -> None:
-        """Save the page as a small PNG."""
+        """Save the page as a PNG of at most 245 kB."""
+        if self._only is not None and name not in self._only:
+            return
         raw = self._page.screenshot(timeout=180_000)
-        image = Image.open(io.BytesIO(raw)).convert("RGB").quantize(_COLOURS)
+        self._save(Image.open(io.BytesIO(raw)).convert("RGB"), name)
+
+    def _save(self, image: Image.Image, name: str) -> None:
         self._folder.mkdir(parents=True, exist_ok=True)
-        image.save(self._folder / f"page-{name}{self._suffix}.png", optimize=True)
+        path = self._folder / f"page-{name}{self._suffix}.png"
+        image.save(path, optimize=True)
+        for colours in (256, 160, 96):
+            if path.stat().st_size <= _LARGEST:
+                break
+            image.quantize(colours, kmeans=2, dither=Image.Dither.NONE).save(path, optimize=True)
+
+    def charts(self, names: Sequence[str], columns: int) -> None:
+        """One picture of several charts, as large as their tab draws them."""
+        drawn = []
+        for name in names:
+            self.press("tab", name, 4.0)
+            raw = self._page.locator(f'[data-chart-tab="{name}"]').screenshot(timeout=180_000)
+            drawn.append(Image.open(io.BytesIO(raw)).convert("RGB"))
+        width = max(image.width for image in drawn) + _GAP
+        rows = [drawn[first : first + columns] for first in range(0, len(drawn), columns)]
+        heights = [max(image.height for image in row) + _GAP for row in rows]
+        sheet = Image.new("RGB", (width * columns + _GAP, sum(heights) + _GAP), drawn[0].getpixel((0, 0)))
+        top = _GAP
+        for row, height in zip(rows, heights, strict=True):
+            for column, image in enumerate(row):
+                sheet.paste(image, (_GAP + column * width, top))
+            top += height
+        self._save(sheet, "charts")
+
+    def resize(self, width: int, height: int) -> None:
+        """Another size of the window."""
+        self._page.set_viewport_size({"width": width, "height": height})
+        time.sleep(6.0)
 
     def hover_front(self) -> None:
         """Rest on a point of the front."""
@@ -91,8 +131,25 @@ def _states_of_a_run(explorer: Explorer, camera: Photographer) -> None:
     time.sleep(1.0)
     camera.take("paused")
     camera.press("run_resume")
-    _wait(lambda: explorer.state.picture.status == FINISHED, 300.0)
+    _wait(lambda: explorer.state.picture.status == FINISHED, 900.0)
     time.sleep(1.0)
+
+
+def _failed_run(explorer: Explorer, camera: Photographer, folder: Path) -> None:
+    """A copy of the run whose file says that it failed: a failing machine cannot be ordered."""
+    source = folder / explorer.state.picture.name
+    copy = folder / f"failed-{source.name}"
+    with sqlite3.connect(source) as old, sqlite3.connect(copy) as new:
+        old.backup(new)
+        reason = "the workers ended three times in a row while evaluating design 412; see the log"
+        new.executemany("UPDATE run SET value = ? WHERE key = ?", [("failed", "state"), (reason, "reason")])
+    explorer.services.open(copy)
+    _wait(lambda: explorer.state.picture.status == FAILED, 20.0)
+    time.sleep(3.0)
+    camera.take("failed")
+    explorer.services.open(source)
+    _wait(lambda: explorer.state.picture.status == FINISHED, 20.0)
+    time.sleep(2.0)
 
 
 def _tour(camera: Photographer) -> None:
@@ -100,19 +157,13 @@ def _tour(camera: Photographer) -> None:
     camera.take("finished")
     camera.hover_front()
     camera.take("hover")
-    camera.tab("Charts")
-    for name in ("open_water", "resistance", "thrust", "lines", "parallel", "drivers", "convergence", "failures"):
-        camera.press("tab", name, 2.0)
-        camera.take(f"chart-{name.replace('_', '-')}")
-    camera.tab("Design")
     camera.press("pin")
-    camera.press("choose", "initial", 2.0)
+    camera.press("choose", "knee", 2.0)
     camera.press("pin")
     camera.press("choose", "compromise", 2.0)
-    camera.tab("Compare")
-    camera.press("switch", "ghost", 3.0)
-    camera.take("compare")
-    camera.press("switch", "ghost")
+    camera.tab("Charts")
+    _charts(camera)
+    _scenes(camera)
     camera.tab("What-if")
     camera.take("what-if")
     camera.tab("Case")
@@ -120,17 +171,52 @@ def _tour(camera: Photographer) -> None:
     camera.tab("Runs")
     camera.take("runs")
     camera.tab("Design space")
+
+
+def _for_the_docs(camera: Photographer) -> None:
+    """What docs/page.md and the README show."""
+    camera.press("choose", "compromise", 5.0)
+    camera.take("finished")
+    camera.press("pin")
+    camera.press("choose", "initial", 2.0)
+    camera.press("choose", "knee", 3.0)
+    camera.press("pin")
+    camera.press("choose", "compromise", 3.0)
+    _scenes(camera)
+    camera.press("switch", "waves", 6.0)
+    camera.press("switch", "dark", 5.0)
+    camera.take("dark")
+    camera.press("switch", "dark", 2.0)
+    camera.press("switch", "waves", 1.0)
+    camera.resize(1366, 1600)
+    camera.charts(("open_water", "thrust", "resistance", "lines", "parallel", "convergence"), 3)
+
+
+def _charts(camera: Photographer) -> None:
+    for name in ("open_water", "resistance", "thrust", "lines", "parallel", "drivers", "convergence", "failures"):
+        camera.press("tab", name, 3.0)
+        camera.take(f"chart-{name.replace('_', '-')}")
+
+
+def _scenes(camera: Photographer) -> None:
+    camera.tab("Compare")
+    camera.press("show_pin", "0", 2.0)
+    camera.press("ghost_pin", "1", 4.0)
+    camera.take("compare")
+    camera.press("switch", "ghost", 2.0)
     camera.tab("Charts")
     camera.press("tab", "open_water")
-    camera.press("switch", "waves", 5.0)
+    camera.press("switch", "waves", 8.0)
     camera.take("waves")
-    camera.press("camera", "propeller", 3.0)
-    camera.take("propeller")
-    camera.press("switch", "pressure", 5.0)
+    camera.press("switch", "pressure", 12.0)
+    camera.press("camera", "below", 3.0)
     camera.take("pressure")
-    camera.press("camera", "perspective", 2.0)
-    camera.press("switch", "dark", 3.0)
-    camera.take("dark")
+    camera.press("switch", "waves", 2.0)
+    camera.press("camera", "propeller", 3.0)
+    camera.take("propeller-pressure")
+    camera.press("switch", "pressure", 3.0)
+    camera.take("propeller")
+    camera.press("camera", "perspective", 3.0)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -138,6 +224,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser = argparse.ArgumentParser(prog="python -m explorer.screenshots")
     parser.add_argument("--to", type=Path, required=True, help="folder for page-*.png")
     parser.add_argument("--large", action="store_true", help="1920x1080 instead of 1366x768")
+    parser.add_argument("--dark", action="store_true", help="the dark page")
+    parser.add_argument("--docs", action="store_true", help="only the pictures of docs/page.md")
     parser.add_argument("--states", choices=("all", "run", "tour"), default="all")
     parser.add_argument("--run", type=Path, default=None, help="photograph this run instead of a small new one")
     arguments = parser.parse_args(argv)
@@ -146,9 +234,9 @@ def main(argv: Sequence[str] | None = None) -> int:
     except ImportError:
         sys.stderr.write("Playwright is missing: pip install '.[test]'\n")
         return 2
-    suffix = "-large" if arguments.large else ""
-    width, height = _SIZES[suffix]
-    case = load_case("dtc-p4119").replaced("optimization", population=24, generations=30, level1_generations=20)
+    width, height = _SIZES["-large" if arguments.large else ""]
+    suffix = ("-large" if arguments.large else "") + ("-dark" if arguments.dark else "")
+    case = load_case("dtc-p4119").replaced("optimization", population=20, generations=24, level1_generations=18)
     shown = arguments.run or (demonstration() if arguments.states == "tour" else None)
     names = ("chromium", "chromium-browser", "google-chrome")
     program = next((path for name in names if (path := shutil.which(name))), None)
@@ -162,11 +250,18 @@ def main(argv: Sequence[str] | None = None) -> int:
             page.add_style_tag(content=_HIDE)
             page.wait_for_selector("[data-selected]", state="attached")
             time.sleep(8.0)
-            camera = Photographer(page, arguments.to, suffix)
+            camera = Photographer(page, arguments.to, suffix, _DOCS if arguments.docs else None)
+            if arguments.dark:
+                camera.press("switch", "dark", 4.0)
             if shown is None:
                 _states_of_a_run(explorer, camera)
-            if arguments.states != "run":
-                _tour(camera)
+            if arguments.docs:
+                _for_the_docs(camera)
+            else:
+                if shown is None:
+                    _failed_run(explorer, camera, Path(folder))
+                if arguments.states != "run":
+                    _tour(camera)
             browser.close()
         finally:
             explorer.close()

@@ -23,6 +23,8 @@ from hpsop_core.errors import HpsopError
 from hpsop_core.evaluation_result import Evaluation
 
 MOST_PINS = 4
+# width of the left dock, px
+LEFT_DOCK = 340
 
 
 @dataclass(frozen=True)
@@ -158,6 +160,16 @@ class Session:
     def chart_width(self) -> float:
         """Of a chart that fills the right dock, px."""
         return self.dock_width - 24.0
+
+    def ghost(self) -> tuple[Shown | None, int | None]:
+        """The design that stands beside the selected one in 3D, and which pin it is; a ship is not its own ghost."""
+        selected = self.selected
+        if not self.options.ghost or selected is None:
+            return None, None
+        place = next((index for index, item in enumerate(self.pins) if item.name == self.options.ghost_of), None)
+        found = self.app.initial_shown(selected.evaluation.level) if place is None else self.pins[place]
+        same = found is not None and found.evaluation.variables == selected.evaluation.variables
+        return (None if same else found), place
 
     def on_close(self, closer: Callable[[], None]) -> None:
         """Call when the browser leaves."""

@@ -34,6 +34,11 @@ def rank_correlation(first: NDArray[np.float64], second: NDArray[np.float64]) ->
     return float(a @ b) / size if size > 0.0 else None
 
 
+def _signed(rho: float) -> str:
+    text = f"{abs(rho):.2f}"
+    return text if text == "0.00" else f"{'+' if rho > 0 else '−'}{text}"
+
+
 def drivers_table(picture: RunPicture) -> str:
     """A table of correlations, coloured by sign and strength; one level at a time."""
     level = picture.current_level
@@ -57,8 +62,7 @@ def drivers_table(picture: RunPicture) -> str:
             colour = "var(--hp-bad)" if rho > 0 else "var(--hp-level1)"
             share = round(70 * abs(rho))
             cells.append(
-                f'<td style="background:color-mix(in srgb, {colour} {share}%, transparent)">'
-                f"{'+' if rho > 0 else '−'}{abs(rho):.2f}</td>"
+                f'<td style="background:color-mix(in srgb, {colour} {share}%, transparent)">{_signed(rho)}</td>'
             )
         rows.append(
             f'<tr><td class="name">{escape(variable.label)} <span class="unit">{symbol_html(variable.symbol)}</span>'

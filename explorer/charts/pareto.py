@@ -159,7 +159,7 @@ def pareto_chart(
     for mark in marks:
         plot.mark(mark.f1, mark.f2, mark.shape, mark.size, mark.css, title=mark.title)
     if not len(picture.ids) and len(marks) <= 2:
-        plot.message("No designs yet.\nPress Start: each generation's front appears here.")
+        plot.message("No designs yet.\nPress Start: each generation's front appears here.", numbers=True)
     return plot.svg("pareto", 'data-drag="pan" data-hover="1" data-click="1" data-box="1" tabindex="0"')
 
 

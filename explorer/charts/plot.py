@@ -135,6 +135,7 @@ class Plot:
     def __post_init__(self) -> None:
         self._elements: list[str] = []
         self._over: list[str] = []
+        self._numbers = True
 
     @property
     def plot_width(self) -> float:
@@ -221,8 +222,9 @@ class Plot:
         """An own element in px."""
         (self._over if over else self._elements).append(svg)
 
-    def message(self, text: str) -> None:
-        """A word in the middle, for a chart that has nothing to show yet."""
+    def message(self, text: str, numbers: bool = False) -> None:
+        """A word in the middle, for a chart that has nothing to show yet; its axes bear no numbers unless asked to."""
+        self._numbers = numbers
         a = self.margins[0] + self.plot_width / 2
         b = self.margins[2] + self.plot_height / 2
         for index, row in enumerate(text.split("\n")):
@@ -248,6 +250,8 @@ class Plot:
         x_end, y_end = self.width - right, self.height - bottom
         grid, labels = [], []
         x_ticks, y_ticks = ticks(self.x_limits, x_count), ticks(self.y_limits, y_count)
+        if not self._numbers:
+            x_ticks, y_ticks = [], []
         for value, text in zip(x_ticks, tick_texts(x_ticks), strict=True):
             a = float(self.px(value))
             grid.append(f"M{a:.1f} {top:.1f}V{y_end:.1f}")

@@ -14,7 +14,7 @@ from explorer.bridge import PageEvent
 from explorer.scene.camera import PRESETS, preset
 from explorer.scene.geometry import SceneGeometry
 from explorer.scene.surroundings import backdrop, calm_water
-from explorer.state import Session, Shown
+from explorer.state import LEFT_DOCK, Session
 from hpsop_core.errors import HpsopError
 
 UNDERWATER = (176, 84, 66)
@@ -45,6 +45,7 @@ class SceneView:
         self._geometry: SceneGeometry | None = None
         self._framed: tuple[float, float, float] | None = None
         self._placed: np.ndarray | None = None
+        self._told, self._docked = 0.0, False
         self._spinning = threading.Event()
         self._dark: bool | None = None
         self.shown_design: object = None
@@ -57,20 +58,11 @@ class SceneView:
         session.hub.on(("size",), lambda: self.place_camera())
         session.handle("act", "camera", self._camera)
         session.on_close(self._spinning.clear)
+        client.camera.on_update(self._looked)
         self._ask()
 
     def _ask(self) -> None:
         self._session.heavy.latest("geometry", self.draw)
-
-    def _ghosted(self) -> tuple[Shown | None, tuple[int, int, int]]:
-        """The design that stands as the ghost, and its colour."""
-        session = self._session
-        if not session.options.ghost or session.selected is None:
-            return None, GHOST
-        for index, item in enumerate(session.pins):
-            if item.name == session.options.ghost_of:
-                return item, PINS[index]
-        return session.app.initial_shown(session.selected.evaluation.level), GHOST
 
     def draw(self) -> None:
         """Bring the scene to the session's selection and options."""
@@ -81,7 +73,8 @@ class SceneView:
             self._client.scene.set_background_image(backdrop(options.dark), format="png")
         if shown is None:
             return
-        ghost, ghost_colour = self._ghosted()
+        ghost, pin = session.ghost()
+        ghost_colour = GHOST if pin is None else PINS[pin]
         state = (
             shown.key,
             options.ghost,
@@ -236,13 +229,19 @@ class SceneView:
         )
 
     def _aspect(self) -> float:
-        """Width over height of the 3D view: the browser's own word, or what the docks leave while it has said none."""
+        """Width over height of the 3D view: the browser's own word once the docks stand, till then what they leave."""
+        session = self._session
+        width, height = session.size
+        left = max(width - LEFT_DOCK - session.dock_width, 200.0) / max(height, 200.0)
+        return self._told if self._docked and self._told > 0.0 else left
+
+    def _looked(self, camera: viser.CameraHandle) -> None:
+        """The browser says where its camera is: a view of another shape is framed anew, unless the user has moved."""
+        before, self._told = self._told, float(camera.aspect)
         width, height = self._session.size
-        try:
-            told = float(self._client.camera.aspect)
-        except (AssertionError, RuntimeError):
-            told = 0.0
-        return told if told > 0.0 else max(width - 840.0, 200.0) / max(height, 200.0)
+        self._docked = self._docked or self._told < 0.9 * width / height
+        if self._docked and abs(self._told - before) > 0.02 * self._told and self._unmoved():
+            self._session.worker.latest("camera", self.place_camera)
 
     def place_camera(self) -> None:
         """Put the camera where its preset stands."""

@@ -106,11 +106,8 @@ class ToolbarView:
         )
 
     def _ghost_words(self) -> str:
-        options = self._session.options
-        if not options.ghost:
-            return ""
-        label = next((item.label for item in self._session.pins if item.name == options.ghost_of), "Initial design")
-        return f"<br>ghost: {escape(label[0].lower() + label[1:])}"
+        ghost, _ = self._session.ghost()
+        return f"<br>ghost: {escape(ghost.label[0].lower() + ghost.label[1:])}" if ghost is not None else ""
 
     def _switch(self, event: PageEvent) -> None:
         options = self._session.options

@@ -61,7 +61,7 @@ def test_hover_shows_all_numbers_of_the_design(page, session):
     page.wait_for_function("() => document.querySelector('.hpsop-tip').style.display === 'block'")
     text = page.locator(".hpsop-tip").inner_text()
     assert text.startswith("Design ")
-    for word in ("Lpp", "CB", "KT₁", "PD₂", "η₀₂", "g₃"):
+    for word in ("LPP", "CB", "KT1", "PD2", "η02", "g₃"):
         assert word in text
     page.mouse.move(5, 5)
     page.wait_for_function("() => document.querySelector('.hpsop-tip').style.display === 'none'")
@@ -172,7 +172,7 @@ def test_pins_stand_side_by_side(page, session):
     page.wait_for_selector('[data-act="unpin"]')
     heads = page.locator("table.numbers:visible th").all_inner_texts()
     assert any(text.startswith("Design ") for text in heads)
-    assert "Initial design" in heads
+    assert any(text.startswith("Initial design") for text in heads)
 
 
 def drag_slider(page, label: str, share: float) -> None:
@@ -291,7 +291,7 @@ def test_screenshot_downloads_a_picture(page, session):
 
 def test_waves_have_a_legend_in_metres(page, session, explorer):
     press(page, "switch", "waves")
-    page.wait_for_selector('.hpsop-overlay-card:has-text("wave height [m]")')
+    page.wait_for_selector('.hpsop-overlay-card:has-text("wave elevation ζ [m]")')
     client = explorer.server.get_clients()[session.client_id]
     wait_until(lambda: client.scene.get_handle_by_name("/waves") is not None, 30, "the wave mesh")
     press(page, "switch", "waves")
