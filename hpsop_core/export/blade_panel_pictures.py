@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from hpsop_core.errors import InputError
+from hpsop_core.export.figures import pyplot
 from hpsop_core.geometry.propeller import load_propeller, propeller_family
 from hpsop_core.geometry.propeller_surface import rotate_blade
 from hpsop_core.hydro import lifting_line
@@ -29,17 +29,6 @@ from hpsop_core.validation.propeller_studies import GRIDS, MODEL_SCALE, experime
 
 _DPI = 100
 _BLUE, _RED, _GREEN, _BRONZE, _GREY = "#1f4e9c", "#b03020", "#207040", "#d9b36a", "#9aa0a6"
-
-
-def _pyplot() -> Any:
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise InputError("pictures need matplotlib; install hpsop with the extra 'pictures'") from error
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    return pyplot
 
 
 def _quadrilaterals(axes: Any, quads: Array, faces: Any, edges: Any, width: float) -> None:
@@ -58,13 +47,13 @@ def _frame(axes: Any, low: Sequence[float], high: Sequence[float], elevation: fl
 
 def panels_picture(file: Path) -> None:
     """The optimiser's panels: the key blade with its share of hub and wake, and the whole without the wakes."""
-    pyplot = _pyplot()
+    plt = pyplot()
     from matplotlib.transforms import Bbox
 
     propeller = propeller_family(load_propeller(), 2.0, 3)
     result = solve(propeller, [0.7], SectionDrag.inviscid())
     model = result.model
-    figure = pyplot.figure(figsize=(11.5, 4.6))
+    figure = plt.figure(figsize=(11.5, 4.6))
     left = figure.add_axes((0.0, 0.0, 0.58, 0.95), projection="3d", proj_type="ortho")
     wake, _ = helical_wake(model.grid, np.full(11, 2.0 * result.wake_pitch_ratio[0]), model.settings.wake_grid)
     near = wake.corners[wake.corners[..., 0].max(axis=1) < 2.2]
@@ -89,7 +78,7 @@ def panels_picture(file: Path) -> None:
     right.set_title("with its images", fontsize=10)
     # 3D axes keep wide margins: store the part of the sheet that holds something
     figure.savefig(file, dpi=_DPI, bbox_inches=Bbox([[0.3, 0.55], [10.6, 4.6]]))
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def _chordwise(result: BladePanelResult, advance: float, radius: float) -> tuple[float, Array, Array, Array]:
@@ -107,7 +96,7 @@ def _chordwise(result: BladePanelResult, advance: float, radius: float) -> tuple
 
 def pressure_picture(file: Path) -> None:
     """Cp on both sides of P4119, and along the chord on three radii."""
-    pyplot = _pyplot()
+    plt = pyplot()
     from matplotlib.cm import ScalarMappable
     from matplotlib.colors import Normalize
 
@@ -116,11 +105,11 @@ def pressure_picture(file: Path) -> None:
     result = solve(propeller_family(load_propeller(), 2.0, 3), [advance], SectionDrag.inviscid(), settings)
     surface = result.surface_pressure(advance)
     scale = Normalize(-0.3, 0.3)
-    colours = pyplot.get_cmap("RdBu_r")(scale(surface.pressure_coefficient))
+    colours = plt.get_cmap("RdBu_r")(scale(surface.pressure_coefficient))
     # the pressures of the blades are the subject; on the hub they are rough where wakes cross its panels
     colours[surface.blade < 0] = (0.62, 0.63, 0.65, 1.0)
     quads = surface.points[surface.quads]
-    figure = pyplot.figure(figsize=(12.0, 7.6))
+    figure = plt.figure(figsize=(12.0, 7.6))
     for left, azimuth, title in ((0.0, 180.0, "back, from upstream"), (0.44, 0.0, "face, from downstream")):
         axes = figure.add_axes((left, 0.40, 0.46, 0.56), projection="3d", proj_type="ortho")
         _quadrilaterals(axes, quads, colours, colours, 0.2)
@@ -144,18 +133,18 @@ def pressure_picture(file: Path) -> None:
         if place == 2:
             axes.legend(frameon=False, fontsize=9)
     figure.savefig(file, dpi=85)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def accuracy_picture(file: Path) -> None:
     """P4119 in open water: level 2, level 1, experiments and PROPAN."""
-    pyplot = _pyplot()
+    plt = pyplot()
     model = model_propeller()
     advance = np.linspace(0.3, 1.1, 33)
     second = solve(model, advance, MODEL_SCALE).open_water
     first = lifting_line.solve(model, advance, MODEL_SCALE)
     rigid = fine_rigid_wake().open_water
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(12.0, 5.0), layout="constrained")
+    figure, (left, right) = plt.subplots(1, 2, figsize=(12.0, 5.0), layout="constrained")
     left.plot(advance, second.thrust_coefficient, color=_BLUE, label="KT, level 2")
     left.plot(advance, 10.0 * second.torque_coefficient, color=_RED, label="10 KQ, level 2")
     left.plot(advance, second.open_water_efficiency, color=_GREEN, label="efficiency, level 2")
@@ -182,12 +171,12 @@ def accuracy_picture(file: Path) -> None:
         axes.grid(alpha=0.3)
         axes.legend(frameon=False, fontsize=9)
     figure.savefig(file, dpi=_DPI)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def grid_picture(file: Path) -> None:
     """KT and KQ of P4119 by both force formulas on ever finer grids."""
-    pyplot = _pyplot()
+    plt = pyplot()
     advance = [0.5, 0.833]
     found = []
     for chordwise, radial in GRIDS:
@@ -195,7 +184,7 @@ def grid_picture(file: Path) -> None:
         result = solve(model_propeller(), advance, MODEL_SCALE, BladePanelSettings(chordwise, radial, hub=hub))
         found.append((*forces_of(result, "circulation"), *forces_of(result, "pressure")))
     values = np.array(found)
-    figure, axes = pyplot.subplots(1, 2, figsize=(11.0, 4.0), layout="constrained")
+    figure, axes = plt.subplots(1, 2, figsize=(11.0, 4.0), layout="constrained")
     for i, one in enumerate(axes):
         reference = values[-1, :2, i]
         for k, (label, colour, style) in enumerate(
@@ -216,7 +205,7 @@ def grid_picture(file: Path) -> None:
         one.set_title(f"P4119, J = {advance[i]:g}", fontsize=11)
     axes[1].legend(frameon=False, fontsize=9, ncols=2)
     figure.savefig(file, dpi=_DPI)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 PICTURES = {
@@ -236,7 +225,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         folder.mkdir(parents=True, exist_ok=True)
         for name, draw in PICTURES.items():
             draw(folder / name)
-    except (InputError, OSError) as error:
+    except OSError as error:
         sys.stderr.write(f"{error}\n")
         return 2
     return 0

@@ -12,7 +12,7 @@ from typing import Any
 
 import numpy as np
 
-from hpsop_core.errors import InputError
+from hpsop_core.export.figures import pyplot
 from hpsop_core.export.hull_shading import ShadedPart, render
 from hpsop_core.geometry.hull import Hull, ParentHull, load_parent_hull
 from hpsop_core.geometry.hull_mesh import hull_view_parts
@@ -23,17 +23,6 @@ _COLOURS = {
     "main": "#2b6cb0", "counter": "#2f855a", "skeg": "#c05621", "bulb": "#6b46c1", "topsides_mid": "#a0aec0",
     "topsides_aft": "#b7a57a", "topsides_stern": "#cbb994", "topsides_bow": "#d69e9e",
 }  # fmt: skip
-
-
-def _pyplot() -> Any:
-    try:
-        import matplotlib
-    except ImportError as problem:
-        raise InputError("pictures need matplotlib: pip install 'hpsop[pictures]'") from problem
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    return pyplot
 
 
 def body_plan(axes: Any, hull: Hull, stations: Sequence[float], underwater_only: bool = False, **style: Any) -> None:
@@ -55,7 +44,7 @@ def _stations(hull: Hull) -> list[float]:
 
 def picture_body_plan(hull: Hull, to: Path) -> None:
     """Body plan of a hull, with the design waterline and the shaft."""
-    plt = _pyplot()
+    plt = pyplot()
     figure, axes = plt.subplots(figsize=(9.0, 6.2), dpi=110)
     body_plan(axes, hull, _stations(hull), color="#2b6cb0", linewidth=0.9)
     axes.axhline(hull.draft, color="#718096", linewidth=0.8, linestyle="--")
@@ -77,7 +66,7 @@ def picture_body_plan(hull: Hull, to: Path) -> None:
 
 def picture_profile_and_patches(hull: Hull, to: Path) -> None:
     """Side view of all patches with iso-parametric lines, stern and bow enlarged, and the waterline in plan."""
-    plt = _pyplot()
+    plt = pyplot()
     figure = plt.figure(figsize=(11.0, 8.0), dpi=90)
     grid = figure.add_gridspec(3, 2, height_ratios=[0.75, 2.4, 0.9])
     whole, stern, bow = figure.add_subplot(grid[0, :]), figure.add_subplot(grid[1, 0]), figure.add_subplot(grid[1, 1])
@@ -111,7 +100,7 @@ def picture_profile_and_patches(hull: Hull, to: Path) -> None:
 
 def picture_solid(hull: Hull, to: Path) -> None:
     """Shaded views of the hull: from ahead, from astern, the stern from below and the bow."""
-    plt = _pyplot()
+    plt = pyplot()
     colours = {"underwater": (0.75, 0.28, 0.22), "topsides": (0.36, 0.52, 0.70)}
     parts = [ShadedPart(*mesh, colours[name]) for name, mesh in hull_view_parts(hull, "view").items()]
     factor = hull.length / 355.0
@@ -133,7 +122,7 @@ def picture_solid(hull: Hull, to: Path) -> None:
 
 def picture_family(parent: ParentHull, to: Path) -> None:
     """Body plans and sectional-area curves over the range of block coefficients and centres of buoyancy."""
-    plt = _pyplot()
+    plt = pyplot()
     figure, axes = plt.subplots(2, 2, figsize=(11.5, 7.0), dpi=90, width_ratios=[1.35, 1.0])
     length, breadth, draft = parent.length, parent.breadth, parent.draft
     box = length * breadth * draft

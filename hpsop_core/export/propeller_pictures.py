@@ -9,11 +9,10 @@ import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 
-from hpsop_core.errors import InputError
+from hpsop_core.export.figures import pyplot
 from hpsop_core.export.hull_shading import ShadedPart, render
 from hpsop_core.geometry.hull import load_parent_hull
 from hpsop_core.geometry.hull_mesh import hull_view_parts
@@ -33,17 +32,6 @@ _ABOVE = (0.36, 0.52, 0.70)
 _DPI = 110
 
 
-def _pyplot() -> Any:
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise InputError("pictures need matplotlib; install hpsop with the extra 'pictures'") from error
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    return pyplot
-
-
 def _parts(propeller: Propeller, placement: Array | None = None) -> list[ShadedPart]:
     """Blades and hub of a propeller for the renderer, where wanted in ship axes."""
     parts = []
@@ -55,7 +43,7 @@ def _parts(propeller: Propeller, placement: Array | None = None) -> list[ShadedP
 
 def family_picture(file: Path) -> None:
     """Members of the family, seen from astern and to one side."""
-    pyplot = _pyplot()
+    plt = pyplot()
     parent = load_propeller()
     members = [
         ("parent: Z 3, EAR 0.607", propeller_family(parent, 2.0, 3)),
@@ -65,21 +53,21 @@ def family_picture(file: Path) -> None:
         ("Z 3, EAR 1.0", propeller_family(parent, 2.0, 3, 1.0, 1.0)),
         ("Z 5, EAR 1.0, pitch x 1.05", propeller_family(parent, 2.0, 5, 1.05, 1.0)),
     ]
-    figure, axes = pyplot.subplots(2, 3, figsize=(11.0, 7.6))
+    figure, axes = plt.subplots(2, 3, figsize=(11.0, 7.6))
     for (title, propeller), place in zip(members, axes.flat, strict=True):
         place.imshow(render(_parts(propeller), 38.0, 18.0, ((0.0, 0.0, 0.0), 1.12), 340, 340))
         place.set_title(title, fontsize=11)
         place.set_axis_off()
     figure.tight_layout()
     figure.savefig(file, dpi=90)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def sections_picture(file: Path) -> None:
     """Expanded outline of P4119 with its sections, and what the rows of the table hold."""
-    pyplot = _pyplot()
+    plt = pyplot()
     parent = load_propeller()
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(11.0, 5.2), width_ratios=[1.5, 1.0])
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11.0, 5.2), width_ratios=[1.5, 1.0])
     radii = np.linspace(0.2, 1.0, 400)
     chord = 2.0 * parent.at(radii).chord_ratio
     left.plot(-0.5 * chord, radii, "k", lw=1.0)
@@ -110,18 +98,18 @@ def sections_picture(file: Path) -> None:
     right.set_title("between the rows (dots: rows of c/D)", fontsize=11)
     figure.tight_layout()
     figure.savefig(file, dpi=_DPI)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def open_water_picture(file: Path) -> None:
     """Level 1 beside the experiment and PROPAN, at model scale."""
-    pyplot = _pyplot()
+    plt = pyplot()
     model = propeller_family(load_propeller(), MODEL_DIAMETER, 3)
     advance = np.linspace(0.1, 1.15, 85)
     prepared = lifting_line.prepare(model)
     viscous = prepared.solve(advance, SectionDrag.model_scale(10.0, 1e-6))
     inviscid = prepared.solve(advance, SectionDrag.inviscid())
-    figure, axes = pyplot.subplots(figsize=(8.0, 5.6))
+    figure, axes = plt.subplots(figsize=(8.0, 5.6))
     colours = {"KT": "#1f4e9c", "10KQ": "#b03020", "eta": "#207040"}
     efficiency = viscous.open_water_efficiency
     axes.plot(advance, viscous.thrust_coefficient, color=colours["KT"], label="KT, level 1")
@@ -152,16 +140,16 @@ def open_water_picture(file: Path) -> None:
     axes.set_title("P4119 in open water, D = 0.3048 m, n = 10 1/s", fontsize=11)
     figure.tight_layout()
     figure.savefig(file, dpi=_DPI)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def loading_picture(file: Path) -> None:
     """Circulation, inflow and the drag's excess along the blade at four advance coefficients."""
-    pyplot = _pyplot()
+    plt = pyplot()
     model = propeller_family(load_propeller(), MODEL_DIAMETER, 3)
     advance = np.array([0.5, 0.7, 0.833, 0.9])
     state = lifting_line.prepare(model).state(advance, SectionDrag.model_scale(10.0, 1e-6))
-    figure, axes = pyplot.subplots(1, 3, figsize=(12.0, 4.2))
+    figure, axes = plt.subplots(1, 3, figsize=(12.0, 4.2))
     hydrodynamic = (2.0 * advance[:, None] + state.axial_velocity) / (
         2.0 * np.pi * state.radius_ratio - state.tangential_velocity
     )
@@ -189,19 +177,19 @@ def loading_picture(file: Path) -> None:
     axes[1].set_ylim(0.6, 1.2)
     figure.tight_layout()
     figure.savefig(file, dpi=_DPI)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def aperture_picture(file: Path) -> None:
     """The parent propeller in the aperture, from the side and from astern."""
-    pyplot = _pyplot()
+    plt = pyplot()
     propeller = propeller_family(load_propeller(), 9.0, 3)
     hull = load_parent_hull().transform(355.0, 51.0, 14.5)
     ship = hull_view_parts(hull, "export")
     parts = [ShadedPart(*ship[name], colour) for name, colour in (("underwater", _PAINT), ("topsides", _ABOVE))]
     parts += _parts(propeller, propeller_placement(hull, propeller))
     clearance = propeller_clearance(hull, propeller)
-    figure, axes = pyplot.subplots(1, 2, figsize=(12.0, 5.0))
+    figure, axes = plt.subplots(1, 2, figsize=(12.0, 5.0))
     for place, title, azimuth, elevation, focus in (
         (axes[0], "from port", 90.0, 0.0, ((11.0, 0.0, 8.2), 14.5)),
         (axes[1], "from astern and port", 148.0, -8.0, ((6.0, 0.0, 8.2), 14.5)),
@@ -216,7 +204,7 @@ def aperture_picture(file: Path) -> None:
     )
     figure.tight_layout()
     figure.savefig(file, dpi=90)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 PICTURES = {
@@ -237,7 +225,7 @@ def main(arguments: Sequence[str] | None = None) -> int:
         folder.mkdir(parents=True, exist_ok=True)
         for name, draw in PICTURES.items():
             draw(folder / name)
-    except (InputError, OSError) as error:
+    except OSError as error:
         sys.stderr.write(f"{error}\n")
         return 2
     return 0

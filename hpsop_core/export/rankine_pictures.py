@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from hpsop_core.errors import InputError
+from hpsop_core.export.figures import pyplot
 from hpsop_core.geometry.analytic_bodies import wigley_panels
 from hpsop_core.geometry.panels import block_points
 from hpsop_core.hydro.michell import wave_coefficients
@@ -25,23 +25,12 @@ _DPI = 100
 _FROUDE_COLOURS = ("#1f5fa8", "#c0392b")
 
 
-def _pyplot() -> Any:
-    try:
-        import matplotlib
-    except ImportError as error:
-        raise InputError("pictures need matplotlib; install hpsop with the extra 'pictures'") from error
-    matplotlib.use("Agg")
-    from matplotlib import pyplot
-
-    return pyplot
-
-
 def waves_picture(file: Path) -> None:
     """Wave patterns and hull pressure of the parent at both conditions."""
-    pyplot = _pyplot()
+    plt = pyplot()
     hull = studies.parent_hull_itself()
     result = solve(hull, studies.FROUDE_NUMBERS, fields=True)
-    figure, axes = pyplot.subplots(4, 1, figsize=(11, 11), height_ratios=[3, 0.62, 3, 0.62], layout="constrained")
+    figure, axes = plt.subplots(4, 1, figsize=(11, 11), height_ratios=[3, 0.62, 3, 0.62], layout="constrained")
     for k, condition in enumerate(result.conditions):
         fields = condition.fields
         if fields is None:
@@ -49,7 +38,7 @@ def waves_picture(file: Path) -> None:
         _pattern(figure, axes[2 * k], fields, condition.froude_number)
         _pressure(figure, axes[2 * k + 1], fields)
     figure.savefig(file, dpi=_DPI)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def _pattern(figure: Any, axes: Any, fields: RankineFields, froude_number: float) -> None:
@@ -76,14 +65,14 @@ def _pressure(figure: Any, axes: Any, fields: RankineFields) -> None:
 
 def tank_picture(file: Path) -> None:
     """The parent beside its towing tests."""
-    pyplot = _pyplot()
+    plt = pyplot()
     hull = studies.parent_hull_itself()
     rows = tank_points()
     numbers = np.round(np.arange(0.16, 0.3001, 0.005), 4)
     result = solve(hull, numbers.tolist())
     table = hull.offset_table()
     thin = wave_coefficients(table.x, table.z, table.y, hull.length, hull.hydrostatics.wetted_surface, numbers.tolist())
-    figure, (left, right) = pyplot.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
+    figure, (left, right) = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
     plane = np.array([c.wave_coefficient for c in result.conditions])
     pressure = np.array([c.wave_coefficient_pressure for c in result.conditions])
     tank_numbers = np.array([row["froude_number"] for row in rows])
@@ -103,15 +92,15 @@ def tank_picture(file: Path) -> None:
     right.set(xlabel="Fn", ylabel="10^3 CT")
     right.legend(fontsize=8)
     figure.savefig(file, dpi=_DPI)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def wigley_picture(file: Path) -> None:
     """The Wigley hull beside thin-ship theory, and the thin-ship limit."""
-    pyplot = _pyplot()
+    plt = pyplot()
     numbers = np.round(np.arange(0.22, 0.4201, 0.008), 4)
     settings = RankineSettings()
-    figure, panels = pyplot.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
+    figure, panels = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
     for axes, breadth in zip(panels, (0.1, 0.02), strict=True):
         hull = wigley_panels(settings.hull_lengthwise, settings.hull_girthwise, breadth=breadth)
         conditions = solve_panels(hull, numbers.tolist(), settings).conditions
@@ -128,14 +117,14 @@ def wigley_picture(file: Path) -> None:
         axes.set_title(f"Wigley hull, B/L {breadth:g}", fontsize=10)
         axes.legend(fontsize=8)
     figure.savefig(file, dpi=_DPI)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def block_picture(file: Path) -> None:
     """Wave resistance over the block coefficient at the parent's dimensions, for three positions of LCB."""
-    pyplot = _pyplot()
+    plt = pyplot()
     ratios = np.linspace(0.905, 1.14, 48)
-    figure, panels = pyplot.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
+    figure, panels = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
     for shift, style in ((0.0, "-"), (0.01, "--"), (-0.01, ":")):
         blocks, areas = studies.sweep_displacement(ratios, shift)
         for k, axes in enumerate(panels):
@@ -149,13 +138,13 @@ def block_picture(file: Path) -> None:
         axes.set_title(f"Fn {studies.FROUDE_NUMBERS[k]:g}", fontsize=10)
         axes.legend(fontsize=8)
     figure.savefig(file, dpi=_DPI)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def objective_picture(file: Path) -> None:
     """Smoothness over the ratios: the curves, and what a cubic leaves of them."""
-    pyplot = _pyplot()
-    figure, panels = pyplot.subplots(2, 2, figsize=(11, 6), height_ratios=[2, 1], sharex="col", layout="constrained")
+    plt = pyplot()
+    figure, panels = plt.subplots(2, 2, figsize=(11, 6), height_ratios=[2, 1], sharex="col", layout="constrained")
     for column, (name, low, high) in enumerate((("length_to_breadth", 6.5, 8.5), ("breadth_to_draft", 3.0, 4.5))):
         at = np.linspace(low, high, 41)
         areas = studies.sweep_ratio(name, at)
@@ -169,7 +158,7 @@ def objective_picture(file: Path) -> None:
         panels[0, column].legend(fontsize=8)
         panels[1, column].set(xlabel=name.replace("_", " "), ylabel="off a cubic [%]", ylim=(-0.2, 0.2))
     figure.savefig(file, dpi=_DPI)
-    pyplot.close(figure)
+    plt.close(figure)
 
 
 def main() -> None:

@@ -1,0 +1,215 @@
+"""One self-contained HTML file: the page's frame, its tables, and how it is put in its place.
+
+Everything that comes from a case, a path or an error message passes ``text``; nothing is fetched from anywhere.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import html
+import os
+import re
+import tempfile
+from collections.abc import Sequence
+from dataclasses import dataclass
+from pathlib import Path
+
+from hpsop_core.errors import InputError
+
+_STYLE = """
+:root { --ink: #1d2733; --soft: #5b6775; --line: #d9dfe6; --tint: #f4f6f9; --accent: #1f5fa8; --warn: #9a4b00;
+  --good: #1b6e3c; --bad: #a3262a; }
+* { box-sizing: border-box; }
+html { -webkit-text-size-adjust: 100%; }
+body { margin: 0 auto; max-width: 62rem; padding: 2.2rem 1.4rem 4rem; background: #fff; color: var(--ink);
+  font: 15px/1.55 system-ui, -apple-system, "Segoe UI", Roboto, "Helvetica Neue", Arial, sans-serif; }
+h1 { font-size: 1.75rem; font-weight: 600; line-height: 1.2; margin: 0 0 .3rem; letter-spacing: -.01em;
+  overflow-wrap: anywhere; }
+h2 { font-size: 1.2rem; font-weight: 600; margin: 2.6rem 0 .7rem; padding-top: .9rem;
+  border-top: 1px solid var(--line); }
+h3 { font-size: 1rem; font-weight: 600; margin: 1.5rem 0 .4rem; }
+p, ul { margin: .5rem 0 .8rem; max-width: 46rem; overflow-wrap: anywhere; }
+ul { padding-left: 1.2rem; } li { margin: .2rem 0; }
+.soft, figcaption, caption { color: var(--soft); }
+.small { font-size: .86rem; }
+.banner { border-left: 4px solid var(--warn); background: #fff7ed; padding: .6rem .9rem; margin: 1rem 0; }
+.lead { font-size: 1.05rem; }
+.scroll { overflow-x: auto; margin: .7rem 0 1.1rem; }
+table { border-collapse: collapse; font-size: .86rem; line-height: 1.4; font-variant-numeric: tabular-nums; }
+caption { text-align: left; padding: 0 0 .35rem; font-size: .86rem; }
+th, td { padding: .22rem .6rem; text-align: right; border-bottom: 1px solid var(--line); vertical-align: top; }
+th { font-weight: 600; } td { white-space: nowrap; }
+th:first-child, td:first-child { text-align: left; padding-left: 0; white-space: normal; }
+thead th { border-bottom: 1.5px solid var(--soft); vertical-align: bottom; }
+td.words { text-align: left; white-space: normal; min-width: 9rem; overflow-wrap: anywhere; }
+th.words { text-align: left; }
+table.wide { font-size: .74rem; } table.wide th, table.wide td { padding: .2rem .32rem; }
+table.wide th:first-child, table.wide td:first-child { padding-left: 0; } table.wide td.words { min-width: 5rem; }
+tr.group th { text-align: left; color: var(--accent); padding-top: .8rem; border-bottom-color: var(--soft); }
+tr.mark td { background: var(--tint); }
+td .change { display: block; color: var(--soft); font-size: .78rem; }
+td .change.good { color: var(--good); } td .change.bad { color: var(--bad); }
+.unit { color: var(--soft); white-space: nowrap; }
+sub { font-size: .72em; line-height: 0; }
+dl.facts { display: grid; grid-template-columns: max-content 1fr; gap: .2rem 1.2rem; margin: .6rem 0; }
+dl.facts dt { color: var(--soft); } dl.facts dd { margin: 0; overflow-wrap: anywhere; }
+figure { margin: .8rem 0 1.4rem; break-inside: avoid; }
+figure svg { display: block; width: 100%; height: auto; max-width: 34rem; }
+figcaption { font-size: .86rem; max-width: 44rem; margin-top: .3rem; }
+.pair { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1.6rem; }
+nav { font-size: .86rem; margin: 1.1rem 0; color: var(--soft); } nav a { margin-right: .9rem; white-space: nowrap; }
+a { color: var(--accent); text-decoration: none; } a:hover { text-decoration: underline; }
+footer { margin-top: 3rem; border-top: 1px solid var(--line); padding-top: .8rem; color: var(--soft);
+  font-size: .82rem; }
+@media (max-width: 46rem) {
+  body { padding: 1.2rem .9rem 3rem; }
+  .pair { grid-template-columns: 1fr; }
+  h1 { font-size: 1.4rem; }
+  dl.facts { grid-template-columns: 1fr; gap: 0; } dl.facts dd { margin-bottom: .5rem; }
+}
+@page { size: A4; margin: 14mm 13mm 16mm; }
+@media print {
+  body { padding: 0; max-width: none; font-size: 9.4pt; }
+  nav { display: none; }
+  h1 { font-size: 17pt; } h2 { font-size: 12.5pt; break-after: avoid; margin-top: 1.6rem; } h3 { break-after: avoid; }
+  .scroll { overflow: visible; }
+  table { font-size: 7.9pt; } th, td { padding: .14rem .4rem; }
+  table.wide { font-size: 6.4pt; } table.wide th, table.wide td { padding: .1rem .22rem; }
+  thead { display: table-header-group; } tr { break-inside: avoid; }
+  figure svg { max-width: 120mm; } .pair figure svg { max-width: 100%; }
+  .banner { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  td, tr.mark td { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  a { color: inherit; }
+}
+"""
+
+
+def text(value: object) -> str:
+    """The value as text of a page: markup characters escaped, line ends made blanks."""
+    return html.escape(" ".join(str(value).split()))
+
+
+def symbol(value: str) -> str:
+    """A quantity's symbol with its subscripts: R_T1 as R with T1 below."""
+    pieces = re.split(r"_([^\s,;:)\]]+)", value)
+    pairs = zip(pieces[::2], [*pieces[1::2], ""], strict=True)
+    return "".join(text(base) + (f"<sub>{text(below)}</sub>" if below else "") for base, below in pairs)
+
+
+def table(
+    header: Sequence[str],
+    rows: Sequence[Sequence[str]],
+    *,
+    caption: str = "",
+    words: Sequence[int] = (),
+    marked: Sequence[int] = (),
+    wide: bool = False,
+) -> str:
+    """A table. Cells and caption are markup already; a row of one cell is a heading across the table.
+
+    Args:
+        header, rows: cells.
+        caption: above the table.
+        words: columns that hold sentences.
+        marked: rows to tint.
+        wide: many columns: smaller in print.
+    """
+
+    def cells(tag: str, row: Sequence[str]) -> str:
+        return "".join(
+            f'<{tag}{" class=words" if index in words else ""}>{cell}</{tag}>' for index, cell in enumerate(row)
+        )
+
+    body = []
+    for number, row in enumerate(rows):
+        if len(row) == 1 and len(header) > 1:
+            body.append(f'<tr class="group"><th colspan="{len(header)}" scope="rowgroup">{row[0]}</th></tr>')
+        else:
+            body.append(f"<tr{' class=mark' if number in marked else ''}>{cells('td', row)}</tr>")
+    head = f"<thead><tr>{cells('th', header)}</tr></thead>"
+    title = f"<caption>{caption}</caption>" if caption else ""
+    kind = ' class="wide"' if wide else ""
+    return f'<div class="scroll"><table{kind}>{title}{head}<tbody>{"".join(body)}</tbody></table></div>'
+
+
+def facts(pairs: Sequence[tuple[str, str]]) -> str:
+    """Names beside their values; both are markup already."""
+    return '<dl class="facts">' + "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in pairs) + "</dl>"
+
+
+def bullets(lines: Sequence[str]) -> str:
+    """A list; lines are markup already."""
+    return "<ul>" + "".join(f"<li>{line}</li>" for line in lines) + "</ul>"
+
+
+def pair(first: str, second: str) -> str:
+    """Two figures side by side where there is room."""
+    return f'<div class="pair">{first}{second}</div>'
+
+
+@dataclass(frozen=True)
+class Section:
+    """A section of a page.
+
+    Attributes:
+        anchor: one word, unique on the page.
+        title: plain text.
+        body: markup.
+    """
+
+    anchor: str
+    title: str
+    body: str
+
+
+def page(title: str, head: str, sections: Sequence[Section], footer: str) -> str:
+    """A whole document.
+
+    Args:
+        title: plain text, of window and page.
+        head: markup below the title.
+        sections: in their order; linked from the top.
+        footer: plain text.
+    """
+    links = " ".join(f'<a href="#{item.anchor}">{text(item.title)}</a>' for item in sections)
+    body = "\n".join(
+        f'<section id="{item.anchor}"><h2>{text(item.title)}</h2>\n{item.body}\n</section>' for item in sections
+    )
+    return (
+        '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
+        '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
+        # Not even a slip can fetch something.
+        '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; style-src \'unsafe-inline\'; '
+        'img-src data:">\n'
+        f"<title>{text(title)}</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n<header><h1>{text(title)}</h1>\n"
+        f"{head}</header>\n<nav>{links}</nav>\n{body}\n<footer>{text(footer)}</footer>\n</body>\n</html>\n"
+    )
+
+
+def write_whole(path: Path, content: str) -> None:
+    """Write a text file so that it appears whole or not at all.
+
+    Raises:
+        InputError: it cannot be written there.
+    """
+    try:
+        path.parent.mkdir(parents=True, exist_ok=True)
+        handle, name = tempfile.mkstemp(prefix=".hpsop-", suffix=path.suffix, dir=path.parent)
+        try:
+            with os.fdopen(handle, "w", encoding="utf-8") as stream:
+                stream.write(content)
+            os.chmod(name, 0o666 & ~_umask())
+            os.replace(name, path)
+        except BaseException:
+            with contextlib.suppress(OSError):
+                os.unlink(name)
+            raise
+    except OSError as error:
+        raise InputError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
+
+
+def _umask() -> int:
+    # There is no way to ask without setting.
+    mask = os.umask(0o022)
+    os.umask(mask)
+    return mask

@@ -1,0 +1,245 @@
+"""Every number of a design that page and report show: its name as naval architects write it, its unit, its digits.
+
+Tables, tooltips, parallel coordinates and correlations all draw from this one list, so a number looks the same wherever
+it stands.
+"""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from hpsop_core.evaluation_result import Evaluation
+
+OBJECTIVE_TITLES = {
+    "resistance": "resistance, Σ w R/R₀",
+    "efficiency": "efficiency, Σ w η₀/η",
+    "delivered_power": "delivered power, Σ w P/P₀",
+    "displacement": "displacement, ∇₀/∇",
+    "cavitation_margin": "cavitation margin, 1 − (EAR − EARreq)/EAR",
+}
+CONSTRAINT_WORDS = {
+    "displacement": "displacement differs from the initial design's by more than allowed (g₁)",
+    "diameter_to_draft": "D/d outside its limits (g₂)",
+    "cavitation": "blade area below Keller's requirement (g₃)",
+    "form": "the parent form does not carry this displacement or LCB",
+    "propeller_clearance": "the propeller would cut the hull",
+}
+
+
+@dataclass(frozen=True)
+class Quantity:
+    """One number of a design.
+
+    Attributes:
+        key: unique, for state and events.
+        label: what it is, short.
+        symbol: what follows an underscore is its subscript.
+        unit: of the shown value.
+        decimals: digits after the point.
+        value: from an evaluation, already in ``unit``; None where it does not exist.
+        group: heading in tables.
+        better: -1 when smaller is better, +1 when larger is, 0 when neither.
+    """
+
+    key: str
+    label: str
+    symbol: str
+    unit: str
+    decimals: int
+    value: Callable[[Evaluation], float | None]
+    group: str
+    better: int = 0
+
+    def text(self, evaluation: Evaluation) -> str:
+        """The number without unit, or a dash."""
+        return number_text(self.value(evaluation), self.decimals)
+
+    def title(self) -> str:
+        """Symbol and unit, for an axis."""
+        return f"{self.symbol} [{self.unit or '–'}]"
+
+
+def number_text(value: float | None, decimals: int) -> str:
+    """Fixed decimals, a true minus, thin spaces between thousands; a dash for nothing."""
+    if value is None or not math.isfinite(value):
+        return "–"
+    text = f"{value:,.{decimals}f}".replace(",", " ").replace("-", "−")
+    return text.replace("−", "", 1) if not text.strip("−0. ") else text
+
+
+def change_text(initial: float | None, selected: float | None, decimals: int, relative: bool = True) -> str:
+    """The change from the initial design: percent, or the plain difference where percent means nothing."""
+    if initial is None or selected is None:
+        return "–"
+    difference = selected - initial
+    if not relative or abs(initial) < 1e-12:
+        text = number_text(difference, decimals)
+        return text if difference <= 0 or text.strip("0.") == "" else f"+{text}"
+    percent = 100.0 * difference / abs(initial)
+    text = number_text(percent, 1)
+    return f"{'+' if percent > 0 and text.strip('0.') else ''}{text} %"
+
+
+def _variable(name: str) -> Callable[[Evaluation], float | None]:
+    return lambda evaluation: float(getattr(evaluation.variables, name))
+
+
+def _hull(name: str, scale: float = 1.0) -> Callable[[Evaluation], float | None]:
+    def get(evaluation: Evaluation) -> float | None:
+        value = getattr(evaluation.hull, name, None) if evaluation.hull else None
+        return None if value is None else float(value) * scale
+
+    return get
+
+
+def _propeller(name: str) -> Callable[[Evaluation], float | None]:
+    def get(evaluation: Evaluation) -> float | None:
+        value = getattr(evaluation.propeller, name, None) if evaluation.propeller else None
+        return None if value is None else float(value)
+
+    return get
+
+
+def _condition(index: int, name: str, scale: float = 1.0) -> Callable[[Evaluation], float | None]:
+    def get(evaluation: Evaluation) -> float | None:
+        if index >= len(evaluation.conditions):
+            return None
+        value = getattr(evaluation.conditions[index], name, None)
+        return None if value is None else float(value) * scale
+
+    return get
+
+
+def _objective(name: str) -> Callable[[Evaluation], float | None]:
+    def get(evaluation: Evaluation) -> float | None:
+        value = evaluation.objectives.get(name)
+        return None if value is None else float(value)
+
+    return get
+
+
+def _constraint(name: str) -> Callable[[Evaluation], float | None]:
+    def get(evaluation: Evaluation) -> float | None:
+        value = evaluation.constraints.get(name)
+        return None if value is None else float(value)
+
+    return get
+
+
+def _diameter_to_draft(evaluation: Evaluation) -> float | None:
+    return evaluation.variables.diameter / evaluation.variables.draft
+
+
+VARIABLES: tuple[Quantity, ...] = (
+    Quantity("length_to_breadth", "length / breadth", "L/B", "", 3, _variable("length_to_breadth"), "Variables"),
+    Quantity("breadth_to_draft", "breadth / draft", "B/d", "", 3, _variable("breadth_to_draft"), "Variables"),
+    Quantity("draft", "draft", "d", "m", 2, _variable("draft"), "Variables"),
+    Quantity("diameter", "propeller diameter", "D", "m", 2, _variable("diameter"), "Variables"),
+    Quantity("blade_count", "blades", "Z", "", 0, _variable("blade_count"), "Variables"),
+    Quantity("pitch_ratio", "pitch multiplier", "P/P₀", "", 3, _variable("pitch_ratio"), "Variables"),
+    Quantity("displacement_ratio", "displacement ratio", "∇/∇₀", "", 3, _variable("displacement_ratio"), "Variables"),
+    Quantity("expanded_area_ratio", "expanded area ratio", "EAR", "", 3, _variable("expanded_area_ratio"), "Variables"),
+    Quantity(
+        "buoyancy_centre_shift",
+        "LCB shift / L",
+        "ΔLCB/L",
+        "%",
+        2,
+        lambda e: 100.0 * e.variables.buoyancy_centre_shift,
+        "Variables",
+    ),
+)
+
+HULL: tuple[Quantity, ...] = (
+    Quantity("length", "length between perpendiculars", "L_PP", "m", 2, _hull("length"), "Hull"),
+    Quantity("breadth", "breadth", "B", "m", 2, _hull("breadth"), "Hull"),
+    Quantity("hull_draft", "draft", "d", "m", 2, _hull("draft"), "Hull"),
+    Quantity("block_coefficient", "block coefficient", "C_B", "", 4, _hull("block_coefficient"), "Hull"),
+    Quantity("displaced_volume", "displaced volume", "∇", "m³", 0, _hull("displaced_volume"), "Hull"),
+    Quantity("wetted_surface", "wetted surface", "S", "m²", 0, _hull("wetted_surface"), "Hull"),
+    Quantity("lcb", "LCB forward of AP", "LCB", "m", 2, _hull("longitudinal_centre_of_buoyancy"), "Hull"),
+    Quantity("booked_cb", "booked block coefficient", "C_B booked", "", 4, _hull("booked_block_coefficient"), "Hull"),
+)
+
+PROPELLER: tuple[Quantity, ...] = (
+    Quantity("propeller_diameter", "diameter", "D", "m", 2, _propeller("diameter"), "Propeller"),
+    Quantity("blades", "blades", "Z", "", 0, _propeller("blade_count"), "Propeller"),
+    Quantity("pitch_07", "P/D at 0.7 R", "P/D", "", 4, _propeller("pitch_diameter_ratio_07R"), "Propeller"),
+    Quantity("area_ratio", "expanded area ratio", "EAR", "", 3, _propeller("expanded_area_ratio"), "Propeller"),
+    Quantity("diameter_to_draft", "diameter / draft", "D/d", "", 3, _diameter_to_draft, "Propeller"),
+    Quantity("tip_clearance", "tip clearance to the hull", "c_tip", "m", 2, _propeller("tip_clearance"), "Propeller"),
+)
+
+OBJECTIVES: tuple[Quantity, ...] = (
+    Quantity("f1", "first objective", "f₁", "", 4, _objective("f1"), "Objectives", -1),
+    Quantity("f2", "second objective", "f₂", "", 4, _objective("f2"), "Objectives", -1),
+)
+
+CONSTRAINTS: tuple[Quantity, ...] = (
+    Quantity("g1", "displacement", "g₁", "", 4, _constraint("displacement"), "Constraints (feasible ≤ 0)"),
+    Quantity("g2", "diameter / draft", "g₂", "", 4, _constraint("diameter_to_draft"), "Constraints (feasible ≤ 0)"),
+    Quantity("g3", "cavitation (Keller)", "g₃", "", 4, _constraint("cavitation"), "Constraints (feasible ≤ 0)"),
+)
+
+_CONDITION = (
+    ("froude_number", "Froude number", "Fn_", "", 4, 1.0, 0),
+    ("speed", "speed", "V_", "kn", 2, 1.0 / 0.514444, 0),
+    ("total_resistance", "total resistance", "R_T", "kN", 0, 1e-3, -1),
+    ("wave_resistance", "wave resistance", "R_W", "kN", 0, 1e-3, -1),
+    ("friction_resistance", "friction (ITTC-57)", "R_F", "kN", 0, 1e-3, -1),
+    ("thrust", "thrust", "T_", "kN", 0, 1e-3, 0),
+    ("torque", "torque", "Q_", "kN m", 0, 1e-3, 0),
+    ("wake_fraction", "wake fraction", "w_", "", 3, 1.0, 0),
+    ("thrust_deduction", "thrust deduction", "t_", "", 3, 1.0, 0),
+    ("advance_coefficient", "advance coefficient", "J_", "", 4, 1.0, 0),
+    ("rotation_rate_rpm", "rotation rate", "n_", "rpm", 1, 1.0, 0),
+    ("thrust_coefficient", "thrust coefficient", "K_T", "", 4, 1.0, 0),
+    ("torque_coefficient", "torque coefficient × 10", "10K_Q", "", 4, 10.0, 0),
+    ("open_water_efficiency", "open-water efficiency", "η_0", "", 4, 1.0, 1),
+    ("delivered_power", "delivered power", "P_D", "MW", 2, 1e-6, -1),
+    ("required_expanded_area_ratio", "required EAR (Keller)", "EAR_req", "", 3, 1.0, 0),
+    ("cavitation_number", "cavitation number", "σ_", "", 3, 1.0, 0),
+    ("blade_cavitation_margin", "least Cp + σ on the blades (level 2)", "Cp+σ", "", 3, 1.0, 0),
+    ("blade_cavitating_share", "back below vapour pressure (level 2)", "A_cav", "%", 1, 100.0, 0),
+)
+
+
+def condition_quantities(froude_numbers: Sequence[float]) -> tuple[Quantity, ...]:
+    """The numbers of each operating condition, headed by its Froude number."""
+    made = []
+    for index, froude in enumerate(froude_numbers):
+        for name, label, symbol, unit, decimals, scale, better in _CONDITION:
+            made.append(
+                Quantity(
+                    f"{name}_{index + 1}",
+                    label,
+                    f"{symbol}{index + 1}" if "_" in symbol else f"{symbol}_{index + 1}",
+                    unit,
+                    decimals,
+                    _condition(index, name, scale),
+                    f"Condition {index + 1}: Fn {froude:g}",
+                    better,
+                )
+            )
+    return tuple(made)
+
+
+def all_quantities(froude_numbers: Sequence[float]) -> tuple[Quantity, ...]:
+    """Everything there is, in the order of the tables."""
+    return (*OBJECTIVES, *HULL, *PROPELLER, *condition_quantities(froude_numbers), *CONSTRAINTS)
+
+
+def objective_title(name: str, symbol: str) -> str:
+    """An objective's axis title: f₁ · resistance, Σ w R/R₀ [-]."""
+    return f"{symbol} = {OBJECTIVE_TITLES.get(name, name)} [–]"
+
+
+def violated(evaluation: Evaluation) -> list[str]:
+    """Violated constraints in words with their amounts."""
+    return [
+        f"{CONSTRAINT_WORDS.get(name, name)} by {number_text(value, 4)}"
+        for name, value in evaluation.constraints.items()
+        if value is not None and value > 1e-6
+    ]
