@@ -162,7 +162,7 @@ def _section_outline(sections: BladeSections, thickness_factor: Array | float, p
 class WakeSettings:
     """The helical wake: `revolutions` turns, steps of `first_step_degrees` that grow by `growth` each.
 
-    A first step of 10 degrees would give KT 1.3 % too low, an end after two turns 0.6 % too high.
+    For KT of P4119 at J = 0.7 a first step of 10 degrees counts -0.6 %, an end after two turns 0.4 %.
     """
 
     revolutions: float = 3.0

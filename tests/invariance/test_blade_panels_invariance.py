@@ -15,6 +15,7 @@ from hpsop_core.hydro.blade_hub_grid import HubSettings
 from hpsop_core.hydro.blade_panels import BladePanelSettings, forces_of, solve
 from hpsop_core.hydro.influence_blade import body_influence, panel_set
 from hpsop_core.hydro.section_drag import SectionDrag
+from hpsop_core.propulsion import ADVANCE_RANGE
 from hpsop_core.validation.propeller_level2 import fine_rigid_wake
 
 INVISCID = SectionDrag.inviscid()
@@ -148,6 +149,23 @@ def test_whole_design_space_has_answers(blades: int, area: float) -> None:
         result = solve(propeller_family(table, 9.0, blades, 1.0, area), advance, SectionDrag.full_scale()).open_water
         assert np.all(np.diff(result.thrust_coefficient) < 0.0)
         assert 0.2 < result.thrust_coefficient[0] < 0.6
+
+
+@pytest.mark.parametrize("blades", [2, 3, 5, 7])
+@pytest.mark.parametrize("pitch", [0.5, 1.5])
+def test_everything_that_a_case_may_ask_for_has_answers_at_both_levels(blades: int, pitch: float) -> None:
+    """The bounds of a case's variables, over the J of an evaluation's open-water curves."""
+    advance, drag = np.linspace(*ADVANCE_RANGE, 5), SectionDrag.full_scale()
+    for area in (0.3, 1.2):
+        propeller = propeller_family(load_propeller(), 9.0, blades, pitch, area)
+        line = lifting_line.solve(propeller, advance, drag)
+        panels = solve(propeller, advance, drag).open_water
+        for result in (line, panels):
+            assert np.all(np.diff(result.thrust_coefficient) < 0.0)
+        # 10 %: pitches and areas far from those of the family, on which nothing was fitted or tuned
+        at = 0.7 * pitch
+        one, other = (np.interp(at, advance, r.thrust_coefficient) for r in (line, panels))
+        assert one == pytest.approx(other, rel=0.1)
 
 
 def test_symmetric_sections_along_their_own_helix() -> None:
