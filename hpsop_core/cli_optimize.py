@@ -73,7 +73,7 @@ def _optimize(arguments: argparse.Namespace) -> int:
             plan += " (the case's proportion)"
         progress.line(f"{plan}; seed {settings.seed}; {arguments.run}")
         controller.subscribe(progress)
-        finished = _driven(controller, progress)
+        finished = driven(controller, progress)
     progress.end()
     if not finished:
         words = ["hpsop", "optimize", arguments.case, "--run", arguments.run]
@@ -90,7 +90,7 @@ def _optimize(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _driven(controller: RunController, progress: Progress) -> bool:
+def driven(controller: RunController, progress: Progress) -> bool:
     """Drive to the end; False if a person (or the system, by SIGTERM) interrupted it."""
     if threading.current_thread() is threading.main_thread():
         # Also where a shell started us in the background, with the interrupt ignored.

@@ -7,17 +7,14 @@ from collections.abc import Sequence
 import numpy as np
 
 from hpsop_core.case import Case
-from hpsop_core.evaluation import Reference, resistance_curve
+from hpsop_core.evaluation import Reference
 from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.export.curves import resistance_points
 from hpsop_core.export.offsets import offsets_csv
 from hpsop_core.geometry.hull import Hull
 from hpsop_core.geometry.propeller import Propeller
 from hpsop_core.geometry.propeller_input import COLUMNS
 
-FROUDE_MARGIN = 0.05
-"""The resistance table reaches this far beyond the conditions' Froude numbers, within 0.1 to 0.5."""
-
-_FROUDE_STEP = 0.01
 _STATIONS = ((-0.02, 0.06, 33), (0.06, 0.2, 22), (0.2, 0.8, 25), (0.8, 0.94, 22), (0.94, 1.035, 39))
 _HEIGHTS = ((0.0, 0.1, 7), (0.1, 1.0, 28))
 _RADII = 21
@@ -74,11 +71,7 @@ def resistance_table(case: Case, evaluation: Evaluation, reference: Reference) -
     Raises:
         SolverFailure: a speed cannot be computed.
     """
-    conditions = [condition.froude_number for condition in evaluation.conditions]
-    low, high = max(0.1, min(conditions) - FROUDE_MARGIN), min(0.5, max(conditions) + FROUDE_MARGIN)
-    steps = np.arange(np.ceil(low / _FROUDE_STEP), np.floor(high / _FROUDE_STEP) + 1) * _FROUDE_STEP
-    froude = tuple(sorted({*(round(float(value), 6) for value in steps), *conditions}))
-    points = resistance_curve(case, evaluation.variables, evaluation.level, froude, reference)
+    points = resistance_points(case, evaluation, reference)
     header = (
         "froude_number", "speed_m_s", "friction_coefficient", "wave_coefficient", "friction_resistance_N",
         "wave_resistance_N", "total_resistance_N",

@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from hpsop_core import evaluate, load_case
-from hpsop_core.cli import main
+from hpsop_core.cli import build_parser, main
 from hpsop_core.evaluation_result import Evaluation
 
 KEYS = {
@@ -29,6 +29,27 @@ CONDITION_KEYS = {
     "torque", "thrust_coefficient", "torque_coefficient", "open_water_efficiency", "delivered_power",
     "required_expanded_area_ratio",
 }  # fmt: skip
+
+
+COMMANDS = (
+    "evaluate dtc-p4119 --level 2 --set diameter=9.3 --json",
+    "resistance dtc-p4119 --froude 0.22,0.27 --level 1 --form-factor 0.1 --water salt --json",
+    "resistance --offsets FILE.csv --length 100 --draft 5 --froude 0.2 --json",
+    "open-water dtc-p4119 --advance 0.5,0.7 --level 2 --inviscid --json",
+    "open-water --geometry FILE.csv --blades 3 --advance 0.7 --diameter 0.3 --rotation-rate 10 --viscosity 1e-6",
+    "optimize dtc-p4119 --run RUN.hpsop --generations 9 --level1-generations 6 --population 8 --seed 1 --workers 1",
+    "show RUN.hpsop --front --generation 3 --json",
+    "show RUN.hpsop --design compromise --json",
+    "export RUN.hpsop --design initial --to FOLDER --formats stl,glb,3dm,dxf,csv,json --force",
+    "report RUN.hpsop --to report.html --force",
+    "reproduce --to FOLDER",
+    "validate --json",
+)
+
+
+@pytest.mark.parametrize("words", COMMANDS)
+def test_the_commands_take_what_the_contract_says(words: str) -> None:
+    assert callable(build_parser().parse_args(words.split()).handler)
 
 
 def output(arguments: list[str], capsys: pytest.CaptureFixture[str]) -> Any:

@@ -1,0 +1,237 @@
+"""`hpsop report` read again by Python's HTML parser; its charts by their data."""
+
+from __future__ import annotations
+
+import dataclasses
+from pathlib import Path
+
+import numpy as np
+import pytest
+from html_reading import Page, check
+
+from hpsop_core import load_case, optimize
+from hpsop_core.case import Case
+from hpsop_core.export import charts
+from hpsop_core.export.curves import hull_lines, resistance_points, thrust_curves
+from hpsop_core.export.report import ReportData, report_html
+from hpsop_core.export.report_tables import failure_table, rank_correlation
+from hpsop_core.quantities import all_quantities, number_text
+from hpsop_core.runs.controller import RunController
+from hpsop_core.runs.reader import RunReader, open_run
+from hpsop_core.runs.records import Failure
+
+TITLE = "<script>alert('Hull & \"screw\"')</script> $\\frac{1}{2 d·Ω"
+SECTIONS = ["result", "pareto", "propulsion", "form", "drivers", "trust", "assumptions", "front", "run", "failures"]
+FIGURES = ["pareto", "convergence", "open-water", "thrust", "resistance-total", "resistance-wave", "body-plan",
+           "sectional-area"]  # fmt: skip
+
+
+def quick_case() -> Case:
+    case = load_case("dtc-p4119").replaced(
+        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
+    )
+    return dataclasses.replace(case, title=TITLE, description="x < y & z </p><b>")
+
+
+@pytest.fixture(scope="module")
+def run(tmp_path_factory: pytest.TempPathFactory) -> RunReader:
+    file = tmp_path_factory.mktemp("run") / "small.hpsop"
+    return optimize(quick_case(), file, generations=4, level1_generations=3, population=8, seed=2, workers=1)
+
+
+@pytest.fixture(scope="module")
+def source(run: RunReader) -> str:
+    return report_html(run)
+
+
+@pytest.fixture(scope="module")
+def page(source: str) -> Page:
+    return Page().read(source)
+
+
+def rows_of(page: Page, section: str, table: int = 0) -> dict[str, list[str]]:
+    return {" ".join(row[0].split()): row[1:] for row in page.tables[section][table]}
+
+
+def test_it_is_whole_and_fetches_nothing(page: Page, source: str) -> None:
+    check(page, source)
+    assert page.sections == SECTIONS
+    assert page.figures == [f"figure-{name}" for name in FIGURES]
+
+
+def test_the_cases_words_are_text(page: Page, source: str) -> None:
+    assert TITLE in page.words[""]
+    assert "x < y & z </p><b>" in page.words[""]
+    assert "<script" not in source and "alert('" not in source
+
+
+def test_the_result_table_holds_the_runs_numbers(page: Page, run: RunReader) -> None:
+    data = ReportData.of(run)
+    assert data.level == 2 and data.initial is not None and data.compromise is not None
+    chosen = [data.initial, *(record for _, record in data.chosen())]
+    assert {record.id for record in chosen[1:]} == {
+        data.compromise.id, data.knee.id, data.front[0].id, data.front[-1].id
+    }  # fmt: skip
+    rows = page.tables["result"][0]
+    assert [cell.split("design ")[-1] for cell in rows[0][1:]] == [str(record.id) for record in chosen]
+    named: dict[str, list[list[str]]] = {}
+    for row in rows[1:]:
+        named.setdefault(row[0].split("[")[0].strip(), []).append(row[1:])
+    quantities = {quantity.key: quantity for quantity in all_quantities(run.case.conditions.froude_numbers)}
+    for key in ("delivered_power_1", "delivered_power_2", "total_resistance_1", "open_water_efficiency_2", "length"):
+        quantity = quantities[key]
+        cells = named[f"{quantity.label} {quantity.symbol.replace('_', '')}"][0]
+        initial = quantity.value(chosen[0].evaluation)
+        assert cells[0] == number_text(initial, quantity.decimals)
+        for cell, record in zip(cells[1:], chosen[1:], strict=True):
+            value = quantity.value(record.evaluation)
+            number = number_text(value, quantity.decimals)
+            assert cell.startswith(number)
+            change = cell.removeprefix(number).replace("−", "-").removesuffix(" %")
+            assert float(change) == pytest.approx(100.0 * (value / initial - 1.0), abs=0.0501)
+    power = data.compromise.evaluation.conditions[0].delivered_power
+    assert f"{power / 1e6:.2f} MW instead of" in page.words["result"]
+
+
+def test_the_front_is_whole(page: Page, run: RunReader) -> None:
+    front = run.front()
+    rows = page.tables["front"][0]
+    assert [row[0] for row in rows[1:]] == [str(record.id) for record in front]
+    assert [row[2] for row in rows[1:]] == [number_text(record.evaluation.objectives["f1"], 4) for record in front]
+    compromise = str(run.generation().compromise)
+    assert any(row[0] == compromise and "compromise" in row[1] for row in rows[1:])
+
+
+def test_assumptions_and_facts_are_the_cases_and_the_runs(page: Page, run: RunReader) -> None:
+    words = " ".join(page.words["assumptions"].split())
+    for told in ("(shift)", "(fixed)", "has the wave coefficients stated in the case", "at both levels",
+                 "1 025.0 kg/m³", "0.094", "within 5.0 %"):  # fmt: skip
+        assert told in words, told
+    facts = page.words["run"]
+    summary = run.summary()
+    assert "finished" in facts and "4 of 4 (level 1: 3, level 2: 1)" in facts
+    counts = rows_of(page, "run")
+    for level in ("1", "2"):
+        assert counts[level][1] == str(summary["evaluations"][level]["count"])
+    assert "not finished" not in page.words[""]
+    assert ("No evaluation failed" in page.words["failures"]) == (not run.failures())
+
+
+def test_pareto_and_convergence_show_the_run(run: RunReader) -> None:
+    from hpsop_core.export.report import _archive
+
+    data = ReportData.of(run)
+    archive, infeasible = _archive(run)
+    assert set(archive) == {1, 2}
+    computed = [point for point in run.archive() if point.objectives is not None]
+    assert len(infeasible) + sum(len(points) for points in archive.values()) == len(computed)
+    figure = charts.convergence_chart(data.generations)
+    upper, lower = figure.axes
+    drawn = np.concatenate([line.get_ydata() for line in upper.lines])
+    assert drawn == pytest.approx([item.hypervolume for item in data.generations])
+    shares = np.concatenate([line.get_ydata() for line in lower.lines])
+    assert shares == pytest.approx([100.0 * item.feasible_share for item in data.generations])
+    front = [(0.8, 0.95), (0.9, 0.9)]
+    figure = charts.pareto_chart(archive, infeasible, front, (1.0, 1.0), front[0], front[1], ("a [–]", "b [–]"))
+    axes = figure.axes[0]
+    clouds = {cloud.get_label(): np.asarray(cloud.get_offsets()) for cloud in axes.collections}
+    assert clouds["level 2, feasible"] == pytest.approx(archive[2])
+    marks = {line.get_label(): (line.get_xdata()[0], line.get_ydata()[0]) for line in axes.lines}
+    assert marks["initial"] == (1.0, 1.0) and marks["compromise"] == front[0] and marks["knee"] == front[1]
+    for x, y in [*front, (1.0, 1.0)]:
+        assert axes.get_xlim()[0] < x < axes.get_xlim()[1] and axes.get_ylim()[0] < y < axes.get_ylim()[1]
+
+
+def test_curves_pass_the_operating_points(run: RunReader) -> None:
+    data = ReportData.of(run)
+    assert data.compromise is not None
+    evaluation = data.compromise.evaluation
+    points = resistance_points(data.case, evaluation, data.reference(2))
+    for condition in evaluation.conditions:
+        at = min(points, key=lambda p: abs(p.froude_number - condition.froude_number))
+        assert at.total_resistance == pytest.approx(condition.total_resistance, rel=1e-9)
+    curves = thrust_curves(data.case, evaluation, points)
+    for number, condition in enumerate(evaluation.conditions):
+        place = int(np.argmin(np.abs(curves.froude_number - condition.froude_number)))
+        assert curves.required[place] == pytest.approx(condition.thrust, rel=1e-9)
+        # A spline through KT every 0.05 of J, against the solver's own polynomial.
+        assert curves.available[number][place] == pytest.approx(condition.thrust, rel=2e-4)
+    figure = charts.resistance_chart([(charts.COMPROMISE_LOOK, points, evaluation)], "wave")
+    line = figure.axes[0].lines[0]
+    for point in points:
+        place = np.flatnonzero(line.get_xdata() == point.froude_number)
+        assert line.get_ydata()[place[0]] == pytest.approx(1e-6 * point.wave_resistance, rel=1e-9)
+    figure = charts.open_water_chart([(charts.COMPROMISE_LOOK, evaluation)])
+    dots = [(line.get_xdata()[0], line.get_ydata()[0]) for line in figure.axes[0].lines if line.get_marker() == "o"]
+    for condition in evaluation.conditions:
+        assert (condition.advance_coefficient, condition.thrust_coefficient) in dots
+        assert (condition.advance_coefficient, condition.open_water_efficiency) in dots
+
+
+def test_every_axis_has_its_title(run: RunReader) -> None:
+    data = ReportData.of(run)
+    evaluation = data.initial.evaluation
+    points = resistance_points(data.case, evaluation, data.reference(2))
+    lines = hull_lines(data.case, evaluation.variables)
+    figures = [
+        charts.open_water_chart([(charts.INITIAL_LOOK, evaluation)]),
+        charts.resistance_chart([(charts.INITIAL_LOOK, points, evaluation)], "total"),
+        charts.thrust_chart([(charts.INITIAL_LOOK, thrust_curves(data.case, evaluation, points), evaluation)]),
+        charts.body_plan_chart([(charts.INITIAL_LOOK, lines)]),
+        charts.sectional_area_chart([(charts.INITIAL_LOOK, lines)]),
+        charts.evolution_chart([("g", "#000000", [(1.0, 1.0)])], ("a [–]", "b [–]"), []),
+    ]
+    for figure in figures:
+        for axes in figure.axes:
+            assert "[" in axes.get_xlabel() and "[" in axes.get_ylabel()
+    # The area under the drawn sectional-area curve is the displacement.
+    line = figures[4].axes[0].lines[0]
+    volume = float(np.trapezoid(line.get_ydata(), line.get_xdata() * evaluation.hull.length))
+    assert volume == pytest.approx(evaluation.hull.displaced_volume, rel=2e-3)
+
+
+def test_rank_correlation_against_scipy() -> None:
+    from scipy.stats import spearmanr
+
+    rng = np.random.default_rng(3)
+    a = rng.integers(0, 5, 60).astype(float)
+    b = a + rng.normal(0.0, 2.0, 60)
+    assert rank_correlation(a, b) == pytest.approx(spearmanr(a, b).statistic, abs=1e-12)
+    b[7] = np.nan
+    keep = np.isfinite(b)
+    assert rank_correlation(a, b) == pytest.approx(spearmanr(a[keep], b[keep]).statistic, abs=1e-12)
+    assert rank_correlation(a, np.ones(60)) is None and rank_correlation(a[:5], b[:5]) is None
+
+
+def test_without_a_feasible_design_it_says_so(tmp_path: Path) -> None:
+    case = quick_case().replaced("constraints", diameter_to_draft_lower=0.74, diameter_to_draft_upper=0.75)
+    run = optimize(case, tmp_path / "none.hpsop", generations=2, level1_generations=2, population=4, workers=1)
+    source = report_html(run)
+    page = Page().read(source)
+    check(page, source)
+    assert page.sections == SECTIONS
+    assert "There is no feasible design on the front" in page.words["result"]
+    assert "The front is empty" in page.words["front"]
+    assert "level 1" in page.words[""]
+    # The initial design breaks g2 as well, and its curves are drawn all the same.
+    assert "D/d outside its limits" in page.words["result"] and "figure-open-water" in page.figures
+
+
+def test_a_run_that_has_hardly_begun(tmp_path: Path) -> None:
+    file = tmp_path / "new.hpsop"
+    RunController(file, quick_case(), workers=1).close()
+    source = report_html(open_run(file))
+    page = Page().read(source)
+    check(page, source)
+    assert page.sections == SECTIONS and not page.figures
+    assert "This run is not finished" in page.words[""] and "Nothing is evaluated yet" in page.words["result"]
+
+
+def test_failures_are_listed_with_their_reasons(run: RunReader) -> None:
+    variables = run.case.initial.variables
+    failures = [Failure(n, 2, 4, "rankine", "<b>singular</b> & more", variables, 0.1) for n in range(60)]
+    page = Page()
+    page.feed("<section id=x>" + failure_table(failures) + "</section>")
+    assert page.tables["x"][0][1] == ["rankine", "2", "60"]
+    assert page.tables["x"][1][1][4] == "<b>singular</b> & more" and len(page.tables["x"][1]) == 41
+    assert "The first 40 of 60" in page.words["x"]
