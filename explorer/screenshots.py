@@ -104,6 +104,16 @@ class Photographer:
         self._page.set_viewport_size({"width": width, "height": height})
         time.sleep(6.0)
 
+    def select_front(self, last: bool) -> None:
+        """Click the point of the front with the least f2, or f1."""
+        marks = self._page.locator("svg[data-chart=pareto] path.mark.level2")
+        if not marks.count():
+            marks = self._page.locator("svg[data-chart=pareto] path.mark.level1")
+        box = (marks.last if last else marks.first).bounding_box()
+        if box is not None:
+            self._page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
+            time.sleep(3.0)
+
     def hover_front(self) -> None:
         """Rest on a point of the front."""
         box = self._page.locator(
@@ -158,7 +168,7 @@ def _tour(camera: Photographer) -> None:
     camera.hover_front()
     camera.take("hover")
     camera.press("pin")
-    camera.press("choose", "knee", 2.0)
+    camera.select_front(last=True)
     camera.press("pin")
     camera.press("choose", "compromise", 2.0)
     camera.tab("Charts")
@@ -178,8 +188,7 @@ def _for_the_docs(camera: Photographer) -> None:
     camera.press("choose", "compromise", 5.0)
     camera.take("finished")
     camera.press("pin")
-    camera.press("choose", "initial", 2.0)
-    camera.press("choose", "knee", 3.0)
+    camera.select_front(last=True)
     camera.press("pin")
     camera.press("choose", "compromise", 3.0)
     _scenes(camera)

@@ -138,6 +138,8 @@ class Session:
         self.since = time.time()
         self.worker = LatestWorker(f"page-{client_id}", self._stumbled)
         self.heavy = LatestWorker(f"scene-{client_id}", self._stumbled)
+        # maps and curves by level 2 take seconds: the next design's geometry must not wait for them
+        self.slow = LatestWorker(f"maps-{client_id}", self._stumbled)
         self.hub = Hub(self.worker)
         self._handlers: dict[tuple[str, str], Callable[[PageEvent], None]] = {}
         self._closers: list[Callable[[], None]] = []
@@ -181,6 +183,7 @@ class Session:
             closer()
         self.worker.close()
         self.heavy.close()
+        self.slow.close()
 
     # ---- gestures --------------------------------------------------------------------------------------------------
     def handle(self, kind: str, target: str, handler: Callable[[PageEvent], None]) -> None:

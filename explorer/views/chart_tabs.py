@@ -34,19 +34,27 @@ def _open_water(session: Session) -> str:
 
 def _with_curves(session: Session) -> list[tuple[Series, Evaluation, DesignCurves]]:
     found = []
+    missing = False
     for series, shown in on_display(session):
         curves = session.app.services.known_curves(shown.evaluation)
         if curves is not None:
             found.append((series, shown.evaluation, curves))
-        elif shown.evaluation.ok:
-            evaluation = shown.evaluation
-
-            def compute(evaluation: Evaluation = evaluation) -> None:
-                session.app.services.curves(evaluation)
-                session.hub.changed("curves")
-
-            session.heavy.latest(f"curves {shown.key}", compute)
+        else:
+            missing = missing or shown.evaluation.ok
+    if missing:
+        # one waiting task, however many designs are walked through meanwhile
+        session.slow.latest("curves", lambda: _compute_curves(session))
     return found
+
+
+def _compute_curves(session: Session) -> None:
+    """The first curves that are missing of what is on display now, the selected design's before the others'."""
+    for _, shown in reversed(on_display(session)):
+        if shown.evaluation.ok and session.app.services.known_curves(shown.evaluation) is None:
+            session.app.services.curves(shown.evaluation)
+            # drawing them asks for the next ones
+            session.hub.changed("curves")
+            return
 
 
 def _resistance(session: Session) -> str:

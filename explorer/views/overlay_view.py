@@ -31,7 +31,7 @@ class OverlayView:
         self._ask()
 
     def _ask(self) -> None:
-        self._session.heavy.latest("overlays", self.draw)
+        self._session.slow.latest("overlays", self.draw)
 
     def draw(self) -> None:
         """Bring the overlays to the session's selection and options."""
@@ -39,6 +39,8 @@ class OverlayView:
         shown, options = session.selected, session.options
         if shown is None or not shown.evaluation.conditions:
             return
+        # the blades' map hangs on the propeller's frame, which turns: the ship has to stand first
+        session.heavy.wait_until_idle(30.0)
         index = min(options.condition, len(shown.evaluation.conditions) - 1)
         key = (shown.key, index, session.picture.case)
         self._one("waves", options.waves, key, lambda: self._waves(shown, index))
