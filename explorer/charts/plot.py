@@ -337,6 +337,6 @@ def legend(entries: Sequence[tuple[str, str, str]]) -> str:
             width = 12
         parts.append(
             f'<span class="key"><svg width="{width}" height="12" viewBox="0 0 {width} 12">{drawn}</svg>'
-            f"{symbol_html(word)}</span>"
+            f"<span>{symbol_html(word)}</span></span>"
         )
     return f'<div class="legend">{"".join(parts)}</div>'

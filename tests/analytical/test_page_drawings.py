@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import re
 
 import numpy as np
@@ -80,6 +81,20 @@ def test_operating_points_lie_on_the_curves_and_on_the_required_thrust(initial: 
             assert abs(np.interp(x, *needed) - y) < 1.0
 
 
+def test_the_conditions_lie_on_the_resistance_and_thrust_curves(case: Case, physics: Physics):
+    variables = dataclasses.replace(case.initial.variables, length_to_breadth=7.6, blade_count=4, pitch_ratio=0.97)
+    evaluation = physics.evaluate(case, variables, 1)
+    curves = physics.curves(case, evaluation)
+    for index, condition in enumerate(evaluation.conditions):
+        at = int(np.argmin(np.abs(curves.froude_number - condition.froude_number)))
+        assert abs(curves.froude_number[at] - condition.froude_number) < 1e-9
+        assert curves.total_resistance[at] == pytest.approx(condition.total_resistance, rel=1e-6)
+        assert curves.wave_resistance[at] == pytest.approx(condition.wave_resistance, rel=1e-6)
+        assert curves.thrust_required[at] == pytest.approx(condition.thrust, rel=1e-6)
+        # the curve of KT has a point every 0.05 of J: straight lines between them cost 0.1 % at most
+        assert curves.thrust_available[index][at] == pytest.approx(condition.thrust, rel=2e-3)
+
+
 def test_smooth_keeps_the_points_and_never_overshoots():
     x = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
     y = np.array([0.0, 0.0, 1.0, 1.0, 3.0])
@@ -130,8 +145,6 @@ def test_the_body_plan_encloses_the_sectional_areas(case: Case, physics: Physics
 
 
 def test_each_pinned_design_is_compared_at_its_own_level(initial: Evaluation):
-    import dataclasses
-
     other = dataclasses.replace(initial, level=2, objectives={**initial.objectives, "f1": 0.5})
     base = dataclasses.replace(initial, level=2, objectives={**initial.objectives, "f1": 0.4})
     table = many_table(
