@@ -9,7 +9,7 @@ from __future__ import annotations
 import math
 import time
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -124,8 +124,8 @@ def evaluate(
         basis = reference_for(case, level) if reference is None else reference
         if basis.level != level:
             raise ValueError(f"a reference of level {basis.level} cannot normalise level {level}")
-        physics = _compute(case, design, level, basis)
-        return _assess(case, design, level, basis, physics, time.perf_counter() - started)
+        result = _assess(case, design, level, basis, _compute(case, design, level, basis))
+        return replace(result, elapsed=time.perf_counter() - started)
     except SolverFailure as failure:
         elapsed = time.perf_counter() - started
         return failed_evaluation(case.name, design, level, failure.stage, failure.reason, elapsed)
@@ -376,7 +376,7 @@ def _chord_07r(propeller: Propeller) -> float:
 
 
 def _assess(
-    case: Case, variables: DesignVariables, level: int, basis: Reference, physics: _Physics, elapsed: float
+    case: Case, variables: DesignVariables, level: int, basis: Reference, physics: _Physics
 ) -> Evaluation:
     hull, propeller, conditions = physics.hull, physics.propeller, physics.conditions
     clearance = propeller_clearance(hull, propeller)
@@ -425,7 +425,6 @@ def _assess(
         feasible=all(value <= FEASIBILITY_TOLERANCE for value in constraints.values() if value is not None),
         warnings=tuple(warnings),
         open_water=_open_water_curve(physics.curve),
-        elapsed=elapsed,
     )
 
 

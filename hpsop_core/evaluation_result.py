@@ -210,16 +210,21 @@ class Evaluation:
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Evaluation:
-        """The evaluation that ``as_dict`` described, to the last bit."""
+        """The evaluation that ``as_dict`` described, to the last bit; keys that this version does not know are left."""
         values = {item.name: data[item.name] for item in fields(cls) if item.name in data}
         values["variables"] = DesignVariables.from_dict(data["variables"])
-        values["hull"] = HullResult(**data["hull"]) if data.get("hull") else None
-        values["propeller"] = PropellerResult(**data["propeller"]) if data.get("propeller") else None
-        values["conditions"] = tuple(ConditionResult(**condition) for condition in data.get("conditions", ()))
-        curves = data.get("open_water")
-        values["open_water"] = OpenWaterCurve(**{key: tuple(v) for key, v in curves.items()}) if curves else None
+        hull, propeller, curves = data.get("hull"), data.get("propeller"), data.get("open_water")
+        values["hull"] = HullResult(**_known(HullResult, hull)) if hull else None
+        values["propeller"] = PropellerResult(**_known(PropellerResult, propeller)) if propeller else None
+        values["conditions"] = tuple(ConditionResult(**_known(ConditionResult, c)) for c in data.get("conditions", ()))
+        columns = {key: tuple(column) for key, column in _known(OpenWaterCurve, curves or {}).items()}
+        values["open_water"] = OpenWaterCurve(**columns) if columns else None
         values["warnings"] = tuple(data.get("warnings", ()))
         return cls(**values)
+
+
+def _known(kind: type[Any], data: Mapping[str, Any]) -> dict[str, Any]:
+    return {item.name: data[item.name] for item in fields(kind) if item.name in data}
 
 
 def failed_evaluation(

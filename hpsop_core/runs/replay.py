@@ -1,7 +1,7 @@
 """Driving a run: ask, answer from the file or by evaluation, tell. To resume is to do the same again.
 
 The evaluations on disk are the only checkpoint. A run that is started again asks the same questions from its seed and
-finds the answers in the file (about 20 ms a generation) until it comes to the first one that is missing; from there it
+finds the answers in the file (about 5 ms a generation) until it comes to the first one that is missing; from there it
 computes. So nothing of the algorithm's state is ever stored, and nothing can be forgotten between two checkpoints.
 """
 
@@ -31,7 +31,7 @@ _EVENT_INTERVAL = 0.1  # seconds between events about progress within a generati
 _RETRY_INTERVAL = 1.0  # seconds between tries to write to a full disk
 _RECENT = 10  # generations that the estimate of the time left looks back on
 _LEVELS = (1, 2)
-_LEVEL2_SECONDS = 0.7  # an evaluation at level 2, until one is measured: the initial design's finds its hull remembered
+_LEVEL2_SECONDS = 0.3  # an evaluation at level 2, until one is measured: the initial design's finds its hull remembered
 
 _T = TypeVar("_T")
 

@@ -40,11 +40,12 @@ def kill(process: subprocess.Popen[bytes]) -> None:
 def run_with_kills(
     path: Path, name: str, plan: tuple[int, int, int, int], total: int, kills: int, seed: int, marks: Path | None = None
 ) -> int:
-    """Run to the end under random kills; returns how many there were."""
+    """Run to the end under random kills, with 1, 2 and 3 workers in turn; returns how many kills there were."""
     dice = random.Random(seed)
     done = 0
     while True:
-        process = begin(path, name, plan, marks)
+        # Every start with another number of workers: that changes nothing either.
+        process = begin(path, name, (1 + (plan[0] + done) % 3, *plan[1:]), marks)
         if done == kills:
             assert process.wait(timeout=300) == 0
             return done
@@ -165,7 +166,7 @@ def _real_runs(tmp_path: Path, runs: int, kills: int) -> None:
     plan = (2, 4, 4, 2)
     case = small_case(population=4, generations=4, level1_generations=2)
     whole = tmp_path / "whole.hpsop"
-    optimize(case, whole, workers=2)
+    optimize(case, whole, workers=3)
     expected = content(whole)
     assert {row[1] for row in expected["evaluations"]} == {"1", "2"}
     happened = 0

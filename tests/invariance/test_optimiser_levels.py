@@ -58,10 +58,11 @@ def test_level_2_ends_on_a_whole_front_for_every_seed(tmp_path: Path) -> None:
     best = hypervolume(union.objectives)
     ends = [min(point[axis] for point in union.objectives) for axis in (0, 1)]
     for run in runs:
-        assert len(run.front()) >= 10
         assert run.generations()[-1].feasible_share >= 0.8
         # A truncated front misses one end and the area beyond it: half or more. Runs that only differ in luck and in a
-        # tenth of the full budget should reach 85 % of what all three found together, and both ends within .02.
+        # fifth of the full budget should reach 85 % of what all three found together, and both ends within .02. How
+        # many designs stand on a front says nothing of that: one that has just been found, with another blade count
+        # for example, may beat all the others, and it is alone until the next generation.
         assert run.generations()[-1].hypervolume >= 0.85 * best
         for axis, name in enumerate(("f1", "f2")):
             assert min(record.evaluation.objectives[name] for record in run.front()) <= ends[axis] + 0.02

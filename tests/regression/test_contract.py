@@ -74,6 +74,15 @@ def test_evaluate(capsys: pytest.CaptureFixture[str]) -> None:
     assert lengths.pop() > 10
 
 
+def test_keys_of_a_later_version_are_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
+    document = output(["evaluate", "dtc-p4119-paper", "--json"], capsys)
+    later = {**document, "seakeeping": {}, "hull": {**document["hull"], "metacentre": 1.0}}
+    later["propeller"] = {**document["propeller"], "noise": 1.0}
+    later["conditions"] = [{**condition, "added_resistance": 1.0} for condition in document["conditions"]]
+    later["open_water"] = {**document["open_water"], "slip": [0.0]}
+    assert Evaluation.from_dict(later).as_dict() == document
+
+
 def test_resistance(capsys: pytest.CaptureFixture[str]) -> None:
     document = output(["resistance", "dtc-p4119-paper", "--froude", "0.2,0.218", "--json"], capsys)
     assert {"length", "wetted_surface", "displaced_volume"} <= set(document["hull"])
