@@ -47,6 +47,8 @@ FIT: FitSettings = {"smoothing": 5e-3, "rounds": 3}
 SNAP = 0.5
 # A step of the aft profile by this part of the draft between two stations is a post, not a slope.
 LEAST_POST = 0.25
+# Flat ends smaller than this part of the largest section are the last slice of a bulb or stem, not worth a warning.
+LEAST_FLAT_END = 0.005
 # Control points may lie this part of the draft beyond the heights of the points, as those of a rounded edge must.
 HEIGHT_ROOM = 0.15
 # Without a stern boss in the table: the reference ship's proportions (5.0 m of 14.5 m).
@@ -124,11 +126,29 @@ def _run(heights: Array, widths: Array, first: int, last: int, below: int) -> Ar
     return np.array(points)
 
 
+def _at_draft(z: Array, y: Array, draft: float) -> float:
+    """Half-breadth at the draft; none where the line through the readings above it closes above it (a counter).
+
+    Args:
+        z, y: readings of one station.
+        draft: m, between the first and the last of them.
+    """
+    value = max(float(PchipInterpolator(z, y)(draft)), 0.0)
+    over = int(np.searchsorted(z, draft * (1.0 + 1e-9), side="right"))
+    if over == 0 or over + 1 >= len(z) or y[over - 1] > 0.0 or z[over - 1] > draft * (1.0 - 1e-9):
+        return value
+    width, next_width, height, next_height = (float(one) for one in (*y[over : over + 2], *z[over : over + 2]))
+    if width <= 0.0 or next_width <= width:
+        return value
+    closes = max(height - width * (next_height - height) / (next_width - width), float(z[over - 1]))
+    return max(0.0, width * (draft - closes) / (height - closes))
+
+
 def _station(x: float, z: Array, y: Array, draft: float) -> _Station | None:
     """The section of one station, or None where the hull is not below the waterline there."""
     below = z < draft * (1.0 - 1e-9)
     above = z > draft * (1.0 + 1e-9)
-    at_draft = max(float(PchipInterpolator(z, y)(draft)), 0.0)
+    at_draft = _at_draft(z, y, draft)
     heights = np.concatenate([z[below], [draft], z[above]])
     widths = np.concatenate([y[below], [at_draft], y[above]])
     top = int(np.sum(below))
@@ -567,11 +587,14 @@ def parent_from_table(table: HalfBreadths, length: float, draft: float) -> Paren
 def _flat_ends(parent: ParentHull) -> tuple[str, ...]:
     """A line for every flat end in the water that is no boss: what level 1 cannot see there."""
     lines = []
+    least = LEAST_FLAT_END * parent.quadrature.largest_area
     for name, end in parent.caps:
         if name in parent.topsides or name == "skeg":
             continue
         u = np.array([0.0 if end == "first" else 1.0])
         area = float(sectional_areas(parent.surface(name), u)[0])
+        if area < least:
+            continue
         x = parent.extent(name)[0 if end == "first" else 1]
         lines.append(
             f"{parent.name} ends in a flat face of {area:.3g} m2 in the water at x = {x:.4g} m: thin-ship theory "

@@ -7,6 +7,7 @@ import math
 from pathlib import Path
 
 import numpy as np
+from scipy import ndimage
 
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.hull import ParentHull
@@ -18,6 +19,8 @@ UNITS = {"m": 1.0, "mm": 0.001, "cm": 0.01, "ft": 0.3048, "in": 0.0254}
 FEWEST_STATIONS, FEWEST_WATERLINES = 7, 5
 # Largest distance of a point from the fitted surface, as a part of the breadth; sound tables stay below 0.5 %.
 LARGEST_DEVIATION = 0.015
+# A reading further than this from all its neighbours, as a part of the greatest half-breadth, is a slip of the pen.
+LARGEST_DENT = 0.05
 # How far the surface may pass the table's heights and breadths between the points, as a part of the draft.
 LARGEST_SWING = 0.03
 STL_STATIONS, STL_WATERLINES, STL_ABOVE = 121, 33, 8
@@ -162,6 +165,33 @@ def _check_size(
         raise InputError(f"{name}: only {below} waterlines below the draft {draft:g} m; at least 4 are needed")
 
 
+def _check_points(name: str, x: Array, z: Array, y: Array, begins: dict[float, int]) -> None:
+    """Holes in the side and single readings that stand out: what no hull has, told by the row.
+
+    A hole is a region of zero readings with hull all round it; an aperture is open towards the stern. A reading stands
+    out where it is larger, or smaller, than all four neighbours by ``LARGEST_DENT`` of the greatest half-breadth.
+    """
+    regions, count = ndimage.label(y == 0.0)
+    border = set(np.concatenate([regions[0], regions[-1], regions[:, 0], regions[:, -1]]).tolist())
+    for region in range(1, count + 1):
+        if region not in border:
+            i, k = (int(value[0]) for value in np.nonzero(regions == region))
+            raise InputError(
+                f"{name} row {begins[float(x[i])] + k}: a hole: half_breadth_m is 0 at station {x[i]:g} m, waterline "
+                f"{z[k]:g} m, with hull all round it; give the half-breadth there"
+            )
+    inner = y[1:-1, 1:-1]
+    around = np.stack([y[:-2, 1:-1], y[2:, 1:-1], y[1:-1, :-2], y[1:-1, 2:]])
+    out = np.maximum(inner - around.max(axis=0), around.min(axis=0) - inner)
+    i, k = (int(value) for value in np.unravel_index(int(np.argmax(out)), out.shape))
+    if out[i, k] > LARGEST_DENT * float(np.max(y)):
+        raise InputError(
+            f"{name} row {begins[float(x[i + 1])] + k + 1}: half_breadth_m {inner[i, k]:g} at station {x[i + 1]:g} m, "
+            f"waterline {z[k + 1]:g} m stands out from all its neighbours ({around[:, i, k].min():g} to "
+            f"{around[:, i, k].max():g} m); correct it"
+        )
+
+
 def parent_hull_from_offsets(path: Path | str, length: float, draft: float) -> ParentHull:
     """A parent hull fitted to a table of offsets.
 
@@ -179,6 +209,7 @@ def parent_hull_from_offsets(path: Path | str, length: float, draft: float) -> P
     _checked_dimensions(path.name, length, draft)
     x, z, y, begins = _grid(path.name, _rows(path))
     _check_size(path.name, x, z, y, length, draft, begins)
+    _check_points(path.name, x, z, y, begins)
     parent = parent_from_table(HalfBreadths(path.name, x, z, y), length, draft)
     _check_fit(parent, path.name, x, z, begins)
     _check_between(parent, path.name, x, z, begins)

@@ -105,6 +105,20 @@ def test_cruiser_stern_above_a_post(tmp_path: Path) -> None:
     assert hull_mesh(hull, "view").is_volume and underwater_mesh(hull, "view").is_volume
 
 
+def test_pram_ends_where_its_run_leaves_the_water(tmp_path: Path) -> None:
+    """A straight run that passes the draft at x = 0, between two waterlines of the table and two of its stations."""
+    def half_breadth(x: float, z: float) -> float:
+        run = max(0.0, 3.0 - 0.15 * x) if x < 30.0 else 0.0
+        beam = 6.0 * (1.0 - max(0.0, (x - 30.0) / 30.0) ** 2)
+        return min(beam, 3.0 * max(0.0, z - run + (0.3 if run == 0.0 else 0.0)))
+
+    stations = np.concatenate([np.arange(-3.3, 12.0, 0.6), np.linspace(13.0, 60.0, 30)])
+    parent = fitted(tmp_path, stations, np.linspace(0.0, 5.0, 21) - 0.1 * np.sin(np.linspace(0.0, np.pi, 21)),
+                    half_breadth, 3.0)  # fmt: skip
+    # A waterline from the cubic through the readings would begin 1.0 m further aft, in a sliver that is not there.
+    assert parent.extent("main")[0] == pytest.approx(0.0, abs=0.1)
+
+
 def test_draft_between_waterlines(tmp_path: Path) -> None:
     """A wedge-sided prism with pointed ends: volume to any draft in closed form."""
     def half_breadth(x: float, z: float) -> float:

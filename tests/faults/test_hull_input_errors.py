@@ -70,12 +70,21 @@ CASES: dict[str, tuple[Callable[[list[str]], list[str]], str]] = {
     "empty": (lambda lines: ["# nothing"], r"empty"),
     "few stations": (lambda lines: lines[:28], r"3 stations; at least 7"),
     "all zero": (lambda lines: [lines[0], *(line.rsplit(",", 1)[0] + ",0" for line in lines[1:])], r"no half-breadth"),
+    # Row 1 is the header, station 50 m begins in row 47: waterline 3 m stands in row 50, station 40 m's in row 41.
+    "hole in the side": (_replaced(50, "50.00,3.00,0"), r"row 50: a hole: .* station 50 m, waterline 3 m"),
+    "long hole": (
+        lambda lines: _replaced(41, "40.00,3.00,0")(_replaced(50, "50.00,3.00,0")(lines)),
+        r"row 41: a hole: .* station 40 m, waterline 3 m",
+    ),
+    "too wide": (_replaced(50, "50.00,3.00,9.0"), r"row 50: half_breadth_m 9 .* stands out .* correct it"),
     "hole along the ship": (
         lambda lines: [line if not line.startswith("50.00") else line.rsplit(",", 1)[0] + ",0" for line in lines],
         r"station 50 m has no breadth below the draft",
     ),
     # 3.1 m where the neighbours have 4.9 m: row 1 is the header, station 50 m begins in row 47.
-    "slip of the pen": (_replaced(50, "50.00,3.00,1.10"), r"row 50: .* off the smooth surface"),
+    "slip of the pen": (_replaced(50, "50.00,3.00,1.10"), r"row 50: half_breadth_m 1.1 .* stands out"),
+    # On the border of the table no four neighbours speak; the smooth surface does.
+    "slip at the deepest waterline": (_replaced(47, "50.00,0.00,3.5"), r"row 4[78]: .* off the smooth surface"),
     "shifted": (_shifted, r"aft perpendicular is at x = 0"),
 }
 
