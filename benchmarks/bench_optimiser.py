@@ -16,6 +16,7 @@ import numpy as np
 
 from hpsop_core.case import load_case
 from hpsop_core.design import DesignVariables
+from hpsop_core.evaluation import evaluate, reference_for
 from hpsop_core.evaluation_result import Evaluation
 from hpsop_core.optimization.nsga2 import Nsga2, Operators
 from hpsop_core.optimization.problem import Candidate, Outcome
@@ -90,18 +91,25 @@ def main() -> None:
     print(f"Latin hypercube of 50                 {1e3 * sample:8.1f} ms")
 
     variables = case.initial.variables
-    result = json_text(free_evaluation(case, variables, 1, None).as_dict())
+    reference = reference_for(case, 1)
+    space = case.bounds
+    designs = [space.decode(vector) for vector in latin_hypercube(space, 300, 3)]
+    results = [json_text(evaluate(case, design, 1, reference).as_dict()) for design in designs]
     with tempfile.TemporaryDirectory() as folder:
-        store = RunStore(Path(folder) / "bench.hpsop", case)
-        numbers = iter(range(1, 10**6))
+        path = Path(folder) / "bench.hpsop"
+        store = RunStore(path, case)
+        numbers = iter(range(len(designs)))
 
         def record() -> None:
-            number = next(numbers)
-            candidate = Candidate(1, variables.replaced({"draft": 14.0 + number * 1e-6}), "sample")
-            store.record_evaluation(number, candidate, 1, result)
+            row = next(numbers)
+            store.record_evaluation(row + 1, Candidate(1, designs[row], "sample"), 1, results[row])
 
-        print(f"An evaluation written to the run file {1e3 * best_of(500, record):8.3f} ms")
+        print(f"An evaluation written to the run file {1e3 * best_of(len(designs), record):8.3f} ms")
+        read = best_of(5, store.outcomes) / len(designs)
+        print(f"  read when the run is resumed        {1e3 * read:8.3f} ms")
         store.close()
+        print(f"  bytes as JSON                       {np.mean([len(result) for result in results]):8.0f}")
+        print(f"  bytes in the file                   {path.stat().st_size / len(designs):8.0f}")
 
     started = time.perf_counter()
     workers = LocalWorkers(1)
