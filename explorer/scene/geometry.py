@@ -83,3 +83,11 @@ def ghost_segments(lines: HullLines, waterline: NDArray[np.float64]) -> NDArray[
                 points = np.column_stack([np.full(len(part), x), side * part[:, 0], part[:, 1]])
                 pieces.append(np.stack([points[:-1], points[1:]], axis=1))
     return np.concatenate(pieces)
+
+
+def without_deck(topsides: Mesh) -> Mesh:
+    """A ghost's topsides: two decks at nearly one height would only flicker through each other."""
+    vertices, faces = topsides
+    height = vertices[:, 2]
+    top = height.max()
+    return vertices, faces[~(height[faces] > top - 1e-4 * abs(top)).all(axis=1)]

@@ -12,7 +12,7 @@ import viser
 
 from explorer.bridge import PageEvent
 from explorer.scene.camera import PRESETS, preset
-from explorer.scene.geometry import SceneGeometry
+from explorer.scene.geometry import SceneGeometry, without_deck
 from explorer.scene.surroundings import backdrop, calm_water
 from explorer.state import LEFT_DOCK, Session
 from hpsop_core.errors import HpsopError
@@ -138,7 +138,7 @@ class SceneView:
             self._mesh(
                 "ghost above",
                 "/ghost/above",
-                *shell.topsides,
+                *without_deck(shell.topsides),
                 color=ghost_colour,
                 opacity=_GHOST_OPACITY,
                 visible=options.topsides,
