@@ -37,7 +37,7 @@ def assert_whole(run: RunReader, population: int, generations: int) -> None:
 
 def no_worker_left(before: set[int]) -> None:
     """Of all that this process began there is at most the idle fork server and Python's resource tracker."""
-    wait_until(lambda: not any(is_alive(process) for process in _grandchildren() - before), 5.0)
+    wait_until(lambda: not any(is_alive(process) for process in _grandchildren() - before))
 
 
 def _grandchildren() -> set[int]:
@@ -212,7 +212,7 @@ def test_no_process_is_left_behind_on_any_exit(tmp_path: Path, how: signal.Signa
     assert len(family) >= 3, "fork server, resource tracker, workers"
     process.send_signal(how)
     process.wait(timeout=30)
-    wait_until(lambda: not any(is_alive(child) for child in family), 5.0)
+    wait_until(lambda: not any(is_alive(child) for child in family))
     RunStore(path).close()  # and the file is free
 
 

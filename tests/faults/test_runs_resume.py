@@ -34,7 +34,7 @@ def kill(process: subprocess.Popen[bytes]) -> None:
     family = descendants(process.pid)
     process.send_signal(signal.SIGKILL)
     process.wait()
-    wait_until(lambda: not any(is_alive(child) for child in family), 5.0)
+    wait_until(lambda: not any(is_alive(child) for child in family))
 
 
 def run_with_kills(
