@@ -19,7 +19,7 @@ from hpsop_core.hydro.rankine import RankineFields, solve, solve_panels
 from hpsop_core.hydro.rankine_settings import RankineSettings
 from hpsop_core.typing_aliases import Array
 from hpsop_core.validation import rankine_studies as studies
-from hpsop_core.validation.rankine import FORM_FACTOR, tank_points
+from hpsop_core.validation.rankine import tank_points
 
 _DPI = 100
 _FROUDE_COLOURS = ("#1f5fa8", "#c0392b")
@@ -30,7 +30,7 @@ def waves_picture(file: Path) -> None:
     plt = pyplot()
     hull = studies.parent_hull_itself()
     result = solve(hull, studies.FROUDE_NUMBERS, fields=True)
-    figure, axes = plt.subplots(4, 1, figsize=(11, 11), height_ratios=[3, 0.62, 3, 0.62], layout="constrained")
+    figure, axes = plt.subplots(4, 1, figsize=(11, 11), height_ratios=[3, 0.75, 3, 0.75], layout="constrained")
     for k, condition in enumerate(result.conditions):
         fields = condition.fields
         if fields is None:
@@ -44,13 +44,18 @@ def waves_picture(file: Path) -> None:
 def _pattern(figure: Any, axes: Any, fields: RankineFields, froude_number: float) -> None:
     limit = 2.5
     levels = np.linspace(-limit, limit, 26)
+    elevation = np.clip(fields.elevation, -limit, limit)
     for side in (1.0, -1.0):
-        filled = axes.contourf(
-            fields.x, side * fields.y, np.clip(fields.elevation, -limit, limit), levels=levels, cmap="RdBu_r"
-        )
+        filled = axes.contourf(fields.x, side * fields.y, elevation, levels=levels, cmap="RdBu_r")
+    # The strip between the two innermost rows, where no hull lies in it.
+    length = float(np.max(fields.quads[..., 0]))
+    for free in (fields.x[:, 0] < 0.0, fields.x[:, 0] > length):
+        x, y, value = (grid[free, :1] for grid in (fields.x, fields.y, elevation))
+        strip = np.hstack([x, x]), np.hstack([-y, y]), np.hstack([value, value])
+        axes.contourf(*strip, levels=levels, cmap="RdBu_r")
     axes.set(aspect="equal", ylabel="y [m]", xlim=(-310, 480), ylim=(-170, 170))
-    axes.set_title(f"Fn {froude_number:g}: elevation [m], x forward from AP", loc="left", fontsize=10)
-    figure.colorbar(filled, ax=axes, shrink=0.8)
+    axes.set_title(f"Fn {froude_number:g}: elevation [m] and pressure on the hull, x forward from AP", loc="left")
+    figure.colorbar(filled, ax=axes, shrink=0.8, ticks=np.arange(-2.0, 2.5), aspect=15)
 
 
 def _pressure(figure: Any, axes: Any, fields: RankineFields) -> None:
@@ -59,8 +64,8 @@ def _pressure(figure: Any, axes: Any, fields: RankineFields) -> None:
         values = fields.pressure_coefficient[start : start + along * across].reshape(along, across)
         start += along * across
         drawn = axes.pcolormesh(grid[..., 0], grid[..., 2], values, cmap="viridis", vmin=-0.3, vmax=0.3)
-    axes.set(xlim=(-310, 480), ylim=(-2, 18), ylabel="z [m]")
-    figure.colorbar(drawn, ax=axes, label="Cp")
+    axes.set(xlim=(-10, 375), ylim=(-2, 17), ylabel="z [m]")
+    figure.colorbar(drawn, ax=axes, label="Cp", ticks=(-0.3, 0.0, 0.3), aspect=6)
 
 
 def tank_picture(file: Path) -> None:
@@ -83,7 +88,7 @@ def tank_picture(file: Path) -> None:
     left.set(xlabel="Fn", ylabel="10^4 Cw", ylim=(0, 14))
     left.legend(fontsize=8)
     friction = np.array([row["friction_coefficient"] for row in rows])
-    ours = (1.0 + FORM_FACTOR) * friction + np.interp(tank_numbers, numbers, plane)
+    ours = (1.0 + studies.FORM_FACTOR) * friction + np.interp(tank_numbers, numbers, plane)
     right.plot(tank_numbers, 1e3 * ours, color="#1f5fa8", label="1.094 CF + Cw, Rankine")
     right.plot(
         tank_numbers, [1e3 * row["total_coefficient"] for row in rows], "ko", ms=5, label="tank, CT of the model"
@@ -124,9 +129,12 @@ def block_picture(file: Path) -> None:
     """Wave resistance over the block coefficient at the parent's dimensions, for three positions of LCB."""
     plt = pyplot()
     ratios = np.linspace(0.905, 1.14, 48)
-    figure, panels = plt.subplots(1, 2, figsize=(11, 4.2), layout="constrained")
+    own_blocks = ratios
+    figure, panels = plt.subplots(1, 2, figsize=(11, 4.8), layout="constrained")
+    shoulder = studies.shoulder_at(ratios)
     for shift, style in ((0.0, "-"), (0.01, "--"), (-0.01, ":")):
         blocks, areas = studies.sweep_displacement(ratios, shift)
+        own_blocks = blocks if shift == 0.0 else own_blocks
         for k, axes in enumerate(panels):
             label = f"LCB {100 * shift:+.0f} % Lpp" if shift else "LCB of the parent"
             axes.plot(blocks, areas[:, k] * 1025.0 * 9.80665 / 1e6, style, color=_FROUDE_COLOURS[k], label=label)
@@ -135,10 +143,19 @@ def block_picture(file: Path) -> None:
     for k, axes in enumerate(panels):
         axes.plot([parent.hydrostatics.block_coefficient], [own[k]], "ko", ms=5, label="parent")
         axes.set(xlabel="block coefficient", ylabel="Rw [MN]", ylim=(0, None))
-        axes.set_title(f"Fn {studies.FROUDE_NUMBERS[k]:g}", fontsize=10)
+        _shoulder_axis(axes, own_blocks, shoulder / (2.0 * np.pi * studies.FROUDE_NUMBERS[k] ** 2 * parent.length))
+        axes.set_title(f"Fn {studies.FROUDE_NUMBERS[k]:g}", loc="left")
         axes.legend(fontsize=8)
     figure.savefig(file, dpi=_DPI)
     plt.close(figure)
+
+
+def _shoulder_axis(axes: Any, blocks: Array, waves: Array) -> None:
+    """A second scale on top: the fore shoulder aft of FP in transverse wave lengths (LCB of the parent)."""
+    ticks = np.arange(np.ceil(10.0 * waves.min()), 10.0 * waves.max()) / 10.0
+    top = axes.secondary_xaxis("top")
+    top.set_xticks(np.interp(-ticks, -waves, blocks), [f"{tick:.1f}" for tick in ticks])
+    top.set_xlabel("fore shoulder aft of FP / wave length (LCB of the parent)", fontsize=9)
 
 
 def objective_picture(file: Path) -> None:

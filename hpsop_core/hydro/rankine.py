@@ -55,7 +55,7 @@ __all__ = [
     "surface_system",
 ]
 
-SOLVER_VERSION = "rankine-1"
+SOLVER_VERSION = "rankine-1.1"
 # Panels off their own plane by this part of their diagonal: on the plane itself the solid angle has two values.
 COLLOCATION_LIFT = 1e-5
 REFINEMENTS = 3

@@ -12,12 +12,14 @@ from hpsop_core.errors import SolverFailure
 from hpsop_core.geometry.analytic_bodies import ellipsoid_quads, wigley_half_breadth
 from hpsop_core.geometry.hull import Hull, load_parent_hull
 from hpsop_core.geometry.panels import HullPanels
+from hpsop_core.hydro.friction import ittc57_coefficient
 from hpsop_core.hydro.michell import wave_coefficients
 from hpsop_core.hydro.rankine import RankineFields, solve
 from hpsop_core.hydro.rankine_settings import RankineSettings
 from hpsop_core.typing_aliases import Array
 
-FROUDE_NUMBERS = (0.22, 0.27)
+FROUDE_NUMBERS, WEIGHTS = (0.22, 0.27), (0.65, 0.35)
+FORM_FACTOR, GRAVITY, VISCOSITY = 0.094, 9.80665, 1.188e-6
 # The bounds of the paper's table 2 on L/B, B/d and d.
 PAPER_BOUNDS = ((6.5, 3.0, 14.0), (8.5, 4.5, 14.5))
 
@@ -37,6 +39,26 @@ def affine_hull(length_to_breadth: float, breadth_to_draft: float, draft: float)
 def latin_hypercube(count: int, seed: int) -> Array:
     """(count, 3) designs L/B, B/d, d inside the paper's bounds."""
     return np.asarray(qmc.scale(qmc.LatinHypercube(3, seed=seed).random(count), *PAPER_BOUNDS), dtype=np.float64)
+
+
+def form_designs(count: int, seed: int) -> list[Hull]:
+    """A Latin hypercube in which the form changes too: displacement by 5 % and LCB by 1 % of the length, each way."""
+    parent = load_parent_hull()
+    block = parent.hydrostatics.block_coefficient
+    lower, upper = ((*bounds, *more) for bounds, more in zip(PAPER_BOUNDS, ((0.95, -0.01), (1.05, 0.01)), strict=True))
+    designs = []
+    for row in qmc.scale(qmc.LatinHypercube(5, seed=seed).random(count), lower, upper):
+        slenderness, flatness, draft, ratio, shift = (float(value) for value in row)
+        breadth = flatness * draft
+        length = slenderness * breadth
+        volume = ratio * block * length * breadth * draft
+        designs.append(parent.transform(length, breadth, draft, volume, shift * length))
+    return designs
+
+
+def affine_designs(count: int, seed: int) -> list[Hull]:
+    """The parent scaled to a Latin hypercube of ratios and drafts."""
+    return [affine_hull(*(float(value) for value in row)) for row in latin_hypercube(count, seed)]
 
 
 def wave_areas(hull: Hull, settings: RankineSettings | None = None) -> Array:
@@ -86,6 +108,23 @@ def sweep_displacement(ratios: Array, buoyancy_centre_shift: float = 0.0) -> tup
     return np.array(blocks), np.array(areas)
 
 
+def fore_shoulder(hull: Hull, share: float = 0.95) -> float:
+    """Distance aft of FP, m, where the sectional area first reaches this share of its largest value."""
+    measured = hull.hydrostatics
+    order = np.argsort(measured.sectional_area_x)
+    x, area = measured.sectional_area_x[order], measured.sectional_area[order] / np.max(measured.sectional_area)
+    ahead = x > 0.5 * hull.length
+    return hull.length - float(np.interp(-share, -area[ahead], x[ahead]))
+
+
+def shoulder_at(ratios: Array) -> Array:
+    """``fore_shoulder`` (n,) over the displacement ratio at the parent's L, B, d and LCB."""
+    parent = load_parent_hull()
+    volume = parent.hydrostatics.displaced_volume
+    dimensions = parent.length, parent.breadth, parent.draft
+    return np.array([fore_shoulder(parent.transform(*dimensions, float(ratio) * volume)) for ratio in ratios])
+
+
 @dataclass(frozen=True)
 class Robustness:
     """What became of a sample of designs: solved, refused with a reason, lowest wave coefficient."""
@@ -96,13 +135,13 @@ class Robustness:
     lowest: float
 
 
-def robustness(count: int, seed: int = 1) -> Robustness:
-    """Solve a Latin hypercube of affine designs inside the paper's bounds at both conditions."""
+def robustness(designs: Sequence[Hull]) -> Robustness:
+    """Solve designs at both conditions."""
     solved = refused = unexplained = 0
     lowest = np.inf
-    for design in latin_hypercube(count, seed):
+    for design in designs:
         try:
-            result = solve(affine_hull(*(float(value) for value in design)), FROUDE_NUMBERS)
+            result = solve(design, FROUDE_NUMBERS)
         except SolverFailure as failure:
             refused += 1
             unexplained += not failure.reason
@@ -119,12 +158,14 @@ class MeshStudy:
     Attributes:
         factors: refinement against the default; the last is the reference.
         unknowns: of each mesh.
-        areas: (meshes, designs, 2).
+        areas: (meshes, designs, 2) wave resistance over rho g.
+        totals: (meshes, designs) resistance over rho g as f1 weighs it, with the paper's weights.
     """
 
     factors: tuple[float, ...]
     unknowns: tuple[int, ...]
     areas: Array
+    totals: Array
 
     def bias(self, mesh: int) -> Array:
         """Mean ratio to the finest mesh at both conditions."""
@@ -138,16 +179,30 @@ class MeshStudy:
         """Spearman's coefficient against the finest mesh at both conditions."""
         return np.array([float(spearmanr(self.areas[mesh][:, k], self.areas[-1][:, k])[0]) for k in range(2)])
 
+    def total_rank_correlation(self, mesh: int) -> float:
+        """The same for the weighted total resistance."""
+        return float(spearmanr(self.totals[mesh], self.totals[-1])[0])
 
-def mesh_study(count: int = 30, factors: tuple[float, ...] = (0.75, 1.0, 1.5), seed: int = 7) -> MeshStudy:
-    """Rank a Latin hypercube of affine designs on three meshes."""
-    designs = [affine_hull(*(float(value) for value in row)) for row in latin_hypercube(count, seed)]
+
+def friction_areas(hull: Hull) -> Array:
+    """Friction with form factor over rho g at both conditions, m3, full scale in salt water."""
+    areas = []
+    for number in FROUDE_NUMBERS:
+        speed = number * (GRAVITY * hull.length) ** 0.5
+        coefficient = (1.0 + FORM_FACTOR) * ittc57_coefficient(speed * hull.length / VISCOSITY)
+        areas.append(0.5 * coefficient * number**2 * hull.length * hull.hydrostatics.wetted_surface)
+    return np.array(areas)
+
+
+def mesh_study(designs: Sequence[Hull], factors: tuple[float, ...] = (0.75, 1.0, 1.5)) -> MeshStudy:
+    """Rank designs on several meshes."""
     unknowns, areas = [], []
     for factor in factors:
         settings = RankineSettings().refined(factor)
         unknowns.append(solve(designs[0], FROUDE_NUMBERS[:1], settings).unknowns)
         areas.append([wave_areas(hull, settings) for hull in designs])
-    return MeshStudy(factors, tuple(unknowns), np.array(areas))
+    friction = np.array([friction_areas(hull) for hull in designs])
+    return MeshStudy(factors, tuple(unknowns), np.array(areas), (np.array(areas) + friction) @ np.array(WEIGHTS))
 
 
 def wigley_michell(hull: HullPanels, breadth: float, froude_numbers: Sequence[float]) -> Array:

@@ -11,7 +11,13 @@ from hpsop_core.geometry.hull import Hull, load_parent_hull
 from hpsop_core.geometry.panels import hull_panels
 from hpsop_core.hydro import rankine
 from hpsop_core.hydro.rankine_grid import surface_grid
-from hpsop_core.validation.rankine_studies import latin_hypercube
+from hpsop_core.validation.rankine_studies import (
+    form_designs,
+    latin_hypercube,
+    robustness,
+    shoulder_at,
+    sweep_displacement,
+)
 
 FROUDE_NUMBERS = (0.22, 0.27)
 
@@ -58,6 +64,30 @@ def test_smooth_over_the_displacement_ratio(middle: float) -> None:
     at = middle + 0.0025 * np.arange(-5, 6)
     hulls = [parent.transform(parent.length, parent.breadth, parent.draft, ratio * volume) for ratio in at]
     assert cubic_residual(at, np.array([wave_resistances(hull) for hull in hulls])) < 2e-3
+
+
+def test_hump_hollow_and_wall_over_the_block_coefficient() -> None:
+    # At the parent's dimensions and LCB, Fn .22. The hollow lies where the fore shoulder is one wave length aft of FP
+    # (the bow's crest meets the shoulder's trough); fuller forms lose that and climb.
+    ratios = np.array([0.905, 0.93, 1.0, 1.055, 1.14])
+    blocks, areas = sweep_displacement(ratios)
+    assert np.all(np.abs(blocks - [0.598, 0.614, 0.661, 0.697, 0.753]) < 0.002)
+    before, hump, parent, hollow, wall = areas[:, 0]
+    assert before < hump > parent > hollow
+    assert wall > 2.0 * hollow
+    assert 0.9 < shoulder_at(ratios)[3] / (2.0 * np.pi * 0.22**2 * 355.0) < 1.1
+    # At .27 the wave is longer than any of these shoulders: no hump, the wall begins earlier.
+    assert np.all(np.diff(areas[2:, 1]) > 0.0)
+
+
+def test_designs_whose_form_varies_too() -> None:
+    # Twenty here, a hundred in `hpsop validate`, with displacement and LCB varied beside L/B, B/d and d.
+    sample = robustness(form_designs(20, seed=11))
+    assert sample.solved + sample.refused == 20
+    assert sample.unexplained == 0
+    # The form transformation clips before it folds, so that all should be solved.
+    assert sample.solved == 20
+    assert sample.lowest > 0.0
 
 
 def test_geometrically_similar_hulls_have_one_coefficient() -> None:
