@@ -62,7 +62,7 @@ class Quantity:
 
 
 def number_text(value: float | None, decimals: int) -> str:
-    """Fixed decimals, a true minus, thin spaces between thousands; a dash for nothing."""
+    """Fixed decimals, a true minus, a space between thousands; a dash for nothing."""
     if value is None or not math.isfinite(value):
         return "–"
     text = f"{value:,.{decimals}f}".replace(",", " ").replace("-", "−")

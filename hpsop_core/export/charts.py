@@ -163,7 +163,8 @@ def open_water_chart(
     with drawing(SIZE[0], 3.9) as figure:
         axes: Any = figure.add_subplot()
         top = 0.8
-        for index, (look, evaluation) in enumerate(designs):
+        drawn: list[tuple[Array, Array, Array, Array]] = []
+        for look, evaluation in designs:
             if evaluation.open_water is None:
                 continue
             j, kt, kq, eta = smooth_open_water(evaluation.open_water)
@@ -171,15 +172,7 @@ def open_water_chart(
             style: dict[str, Any] = {"color": look.colour, "linestyle": look.line, "linewidth": 1.2}
             for number, values in enumerate((kt, kq, eta)):
                 axes.plot(j, values, label=look.name if number == 0 else None, **style)
-            if index == 0:
-                # Where the three are apart: at low J, at the peak, and where the thrust has nearly gone.
-                late = int(0.76 * len(j))
-                for place, values, word, shift in (
-                    (1, kq, "$10K_Q$", (3, 4)),
-                    (int(np.nanargmax(eta)), eta, "$\\eta_0$", (-4, 4)),
-                    (late, kt, "$K_T$", (-16, -8)),
-                ):
-                    axes.annotate(word, (j[place], values[place]), shift, textcoords="offset points", color=INK)
+            drawn.append((j, kt, kq, eta))
             for condition in evaluation.conditions if required else ():
                 at = condition.advance_coefficient
                 parabola = condition.thrust_coefficient / at**2 * j**2
@@ -188,6 +181,7 @@ def open_water_chart(
                 for height in (condition.thrust_coefficient, condition.open_water_efficiency):
                     axes.plot(at, height, "o", color=look.colour, markersize=4, markeredgecolor="white", zorder=5)
                 axes.plot([at, at], [0.0, condition.open_water_efficiency], color=look.colour, linewidth=0.5, alpha=0.6)
+        _name_curves(axes, drawn)
         draw_paper_points(axes, paper)
         axes.set_ylim(0.0, 1.04 * top)
         titled(axes, "advance coefficient $J$ [–]", "$K_T$, $10K_Q$, $\\eta_0$ [–]")
@@ -197,6 +191,20 @@ def open_water_chart(
             names.append("required $K_T$")
         figure.legend(handles, names, loc="outside lower center", ncols=3, frameon=False)
         return figure
+
+
+def _name_curves(axes: Any, drawn: Sequence[tuple[Array, Array, Array, Array]]) -> None:
+    """KT, 10KQ and eta0 where the three are apart: at low J, at the peak, and where the thrust has nearly gone."""
+    if not drawn:
+        return
+    j = drawn[0][0]
+    late, peak = int(0.76 * len(j)), int(np.nanargmax(drawn[0][3]))
+    for place, height, word, shift in (
+        (1, max(float(kq[1]) for _, _, kq, _ in drawn), "$10K_Q$", (3, 4)),
+        (peak, max(float(np.nanmax(eta)) for *_, eta in drawn), "$\\eta_0$", (-4, 4)),
+        (late, min(float(np.nan_to_num(kt[late])) for _, kt, _, _ in drawn), "$K_T$", (-16, -9)),
+    ):
+        axes.annotate(word, (j[place], height), shift, textcoords="offset points", color=INK)
 
 
 def resistance_chart(

@@ -47,7 +47,7 @@ table.wide { font-size: .74rem; } table.wide th, table.wide td { padding: .2rem 
 table.wide th:first-child, table.wide td:first-child { padding-left: 0; } table.wide td.words { min-width: 5rem; }
 tr.group th { text-align: left; color: var(--accent); padding-top: .8rem; border-bottom-color: var(--soft); }
 tr.mark td { background: var(--tint); }
-td .change { display: block; color: var(--soft); font-size: .78rem; }
+td .change { display: inline-block; min-width: 4.3rem; color: var(--soft); font-size: .78rem; }
 td .change.good { color: var(--good); } td .change.bad { color: var(--bad); }
 .unit { color: var(--soft); white-space: nowrap; }
 sub { font-size: .72em; line-height: 0; }
@@ -56,7 +56,7 @@ dl.facts dt { color: var(--soft); } dl.facts dd { margin: 0; overflow-wrap: anyw
 figure { margin: .8rem 0 1.4rem; break-inside: avoid; }
 figure svg { display: block; width: 100%; height: auto; max-width: 34rem; }
 figcaption { font-size: .86rem; max-width: 44rem; margin-top: .3rem; }
-.pair { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1.6rem; }
+.pair { display: grid; grid-template-columns: 1fr 1fr; gap: 0 1.6rem; break-inside: avoid; }
 nav { font-size: .86rem; margin: 1.1rem 0; color: var(--soft); } nav a { margin-right: .9rem; white-space: nowrap; }
 a { color: var(--accent); text-decoration: none; } a:hover { text-decoration: underline; }
 footer { margin-top: 3rem; border-top: 1px solid var(--line); padding-top: .8rem; color: var(--soft);
@@ -66,19 +66,20 @@ footer { margin-top: 3rem; border-top: 1px solid var(--line); padding-top: .8rem
   .pair { grid-template-columns: 1fr; }
   h1 { font-size: 1.4rem; }
   dl.facts { grid-template-columns: 1fr; gap: 0; } dl.facts dd { margin-bottom: .5rem; }
+  td .change { display: block; } td:first-child { min-width: 8.5rem; }
 }
 @page { size: A4; margin: 14mm 13mm 16mm; }
 @media print {
-  body { padding: 0; max-width: none; font-size: 9.4pt; }
+  html { font-size: 12.4px; }
+  body { padding: 0; max-width: none; font-size: 1rem; }
   nav { display: none; }
-  h1 { font-size: 17pt; } h2 { font-size: 12.5pt; break-after: avoid; margin-top: 1.6rem; } h3 { break-after: avoid; }
+  h2 { margin-top: 1.5rem; break-after: avoid; } h3 { break-after: avoid; } p, ul { max-width: none; }
   .scroll { overflow: visible; }
-  table { font-size: 7.9pt; } th, td { padding: .14rem .4rem; }
-  table.wide { font-size: 6.4pt; } table.wide th, table.wide td { padding: .1rem .22rem; }
-  thead { display: table-header-group; } tr { break-inside: avoid; }
-  figure svg { max-width: 120mm; } .pair figure svg { max-width: 100%; }
-  .banner { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
-  td, tr.mark td { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
+  th, td { padding: .14rem .45rem; }
+  table.wide { font-size: .68rem; } table.wide th, table.wide td { padding: .1rem .24rem; }
+  thead { display: table-header-group; } tr { break-inside: avoid; } tr.group { break-after: avoid; }
+  figure svg { max-width: 115mm; } .pair figure svg { max-width: 100%; }
+  .banner, td, td span { print-color-adjust: exact; -webkit-print-color-adjust: exact; }
   a { color: inherit; }
 }
 """
@@ -93,7 +94,7 @@ def symbol(value: str) -> str:
     """A quantity's symbol with its subscripts: R_T1 as R with T1 below."""
     pieces = re.split(r"_([^\s,;:)\]]+)", value)
     pairs = zip(pieces[::2], [*pieces[1::2], ""], strict=True)
-    return "".join(text(base) + (f"<sub>{text(below)}</sub>" if below else "") for base, below in pairs)
+    return "".join(html.escape(base) + (f"<sub>{html.escape(below)}</sub>" if below else "") for base, below in pairs)
 
 
 def table(

@@ -232,23 +232,37 @@ def _result(data: ReportData) -> str:
     return "".join(parts)
 
 
+def _kept(value: float, decimals: int, unit: str = "") -> str:
+    """A number with its unit, never parted by the end of a line."""
+    return f"{number_text(value, decimals)} {unit}".strip().replace(" ", "\xa0")
+
+
 def _in_short(data: ReportData, initial: Evaluation, record: DesignRecord) -> str:
     chosen = record.evaluation
     lines = []
     for before, after in zip(initial.conditions, chosen.conditions, strict=False):
         lines.append(
-            f"At Fn {number_text(after.froude_number, 3)} ({number_text(after.speed / 0.514444, 1)} kn): delivered "
-            "power "
-            f"<strong>{number_text(1e-6 * after.delivered_power, 2)} MW</strong> instead of "
-            f"{number_text(1e-6 * before.delivered_power, 2)} MW "
+            f"At Fn {_kept(after.froude_number, 3)} ({_kept(after.speed / 0.514444, 1, 'kn')}): delivered power "
+            f"<strong>{_kept(1e-6 * after.delivered_power, 2, 'MW')}</strong> instead of "
+            f"{_kept(1e-6 * before.delivered_power, 2, 'MW')} "
             f"({change_text(before.delivered_power, after.delivered_power, 1)}), total resistance "
-            f"{number_text(1e-3 * after.total_resistance, 0)} kN "
+            f"{_kept(1e-3 * after.total_resistance, 0, 'kN')} "
             f"({change_text(before.total_resistance, after.total_resistance, 0)}), open-water efficiency "
-            f"{number_text(after.open_water_efficiency, 3)} instead of {number_text(before.open_water_efficiency, 3)}."
+            f"{_kept(after.open_water_efficiency, 3)} instead of {_kept(before.open_water_efficiency, 3)}."
         )
         if abs(after.speed / before.speed - 1.0) > 1e-6:
-            speed = number_text(before.speed / 0.514444, 1)
-            lines[-1] += f" The initial design runs {speed} kn at that Froude number: the powers are of two speeds."
+            speed = _kept(before.speed / 0.514444, 1, "kn")
+            lines[-1] += f" The initial design runs {speed} at that Froude number: the powers are of two speeds."
+    hull, before_hull = chosen.hull, initial.hull
+    if hull is not None and before_hull is not None and hull.booked_volume is not None:
+        lines.append(
+            f"<strong>Its hull really displaces {_kept(hull.displaced_volume, 0, 'm³')}</strong> "
+            f"({change_text(before_hull.displaced_volume, hull.displaced_volume, 0)}); the case only books "
+            f"{_kept(hull.booked_volume, 0, 'm³')} "
+            f"({change_text(before_hull.booked_volume, hull.booked_volume, 0)})."
+        )
+        if hull.displaced_volume < hull.booked_volume:
+            lines[-1] += " A smaller ship is part of the gain."
     return (
         f'<p class="lead">The compromise between both objectives is design {record.id}, one of {len(data.front)} on '
         f"the front; numbers of level {chosen.level}.</p>{bullets(lines)}"

@@ -93,7 +93,7 @@ def result_table(case: Case, initial: DesignRecord, others: Sequence[tuple[str, 
     rows.append(["Constraints"])
     kept = ["yes" if record.evaluation.feasible else "no" for record in (initial, *(record for _, record in others))]
     rows.append(["all constraints that apply are kept", *kept])
-    return table(header, rows, caption="Below each number: change against the initial design at the same level")
+    return table(header, rows, caption="Beside each number: change against the initial design at the same level")
 
 
 def broken_constraints(evaluation: Evaluation) -> list[str]:

@@ -199,7 +199,7 @@ def _off(made: Table, design: str, quantity: str) -> str:
     index = made.header.index(f"{quantity} off [%]")
     values = [value for row in made.rows if row[0] == design and isinstance(value := row[index], float)]
     low, high = (number_text(value, 1) for value in (min(values), max(values)))
-    return f"{low} to {high} %"
+    return f"{low} to {high}\xa0%"
 
 
 # -- tables --------------------------------------------------------------------------------------------------------
@@ -233,7 +233,11 @@ def _html(made: Table, wide: bool = False, marked: Sequence[int] = ()) -> str:
 def _table2(made: Table) -> str:
     labels = {quantity.key: quantity.label for quantity in VARIABLES}
     units = {quantity.key: quantity.unit or "–" for quantity in VARIABLES}
-    rows = [(f"{labels[str(row[0])]} [{units[str(row[0])]}]", *row[1:]) for row in made.rows]
+    rows: list[tuple[Cell, ...]] = []
+    for name, *limits in made.rows:
+        # Blades are counted.
+        shown = [f"{value:.0f}" for value in limits] if name == "blade_count" else limits
+        rows.append((f"{labels[str(name)]} [{units[str(name)]}]", *shown))
     return _html(dataclasses.replace(made, rows=tuple(rows)))
 
 

@@ -85,6 +85,7 @@ class Page(HTMLParser):
         if self._open and self._open[-1] == "style":
             assert "url(" not in data and "@import" not in data
             return
+        data = data.replace("\xa0", " ")
         self.words[self._section] += data
         if self._cell:
             row = self.tables[self._section][-1][-1]

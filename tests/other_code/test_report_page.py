@@ -217,6 +217,19 @@ def test_without_a_feasible_design_it_says_so(tmp_path: Path) -> None:
     assert "D/d outside its limits" in page.words["result"] and "figure-open-water" in page.figures
 
 
+def test_a_booked_displacement_is_told_from_the_real_one(tmp_path: Path) -> None:
+    case = load_case("dtc-p4119-paper")
+    run = optimize(case, tmp_path / "paper.hpsop", generations=1, level1_generations=1, population=6, workers=1)
+    page = Page().read(report_html(run))
+    hull = run.design("compromise").evaluation.hull
+    assert abs(hull.booked_volume / hull.displaced_volume - 1.0) > 1e-3
+    words = " ".join(page.words["result"].split())
+    assert f"really displaces {number_text(hull.displaced_volume, 0)} m³" in words
+    assert f"only books {number_text(hull.booked_volume, 0)} m³" in words
+    assert any(row[0].startswith("booked block coefficient CB booked") for row in page.tables["result"][0])
+    assert "(affine)" in page.words["assumptions"] and "only booked" in page.words["trust"]
+
+
 def test_a_run_that_has_hardly_begun(tmp_path: Path) -> None:
     file = tmp_path / "new.hpsop"
     RunController(file, quick_case(), workers=1).close()
