@@ -23,6 +23,9 @@ from hpsop_core.errors import HpsopError
 from hpsop_core.evaluation_result import Evaluation
 
 MOST_PINS = 4
+# viser's client holds a batch of messages with 3D nodes in it until the graphics' next frame; curves and tables that
+# travel with them would wait too. So the scene follows a moment later, in a batch of its own.
+_SCENE_SETTLES = 0.06
 # width of the left dock, px
 LEFT_DOCK = 340
 
@@ -85,10 +88,12 @@ class ViewOptions:
     """What of the design is drawn in 3D; belongs to a browser.
 
     ``ghost_of`` is "initial" or the ``name`` of a pinned design; a pin that is gone means the initial design.
+    ``beside`` puts the ghost abeam, to port, where neither hull hides the other.
     """
 
     ghost: bool = False
     ghost_of: str = "initial"
+    beside: bool = False
     waves: bool = False
     pressure: bool = False
     spin: bool = False
@@ -137,7 +142,7 @@ class Session:
         self.legends: dict[str, str] = {}
         self.since = time.time()
         self.worker = LatestWorker(f"page-{client_id}", self._stumbled)
-        self.heavy = LatestWorker(f"scene-{client_id}", self._stumbled)
+        self.heavy = LatestWorker(f"scene-{client_id}", self._stumbled, _SCENE_SETTLES)
         # maps and curves by level 2 take seconds: the next design's geometry must not wait for them
         self.slow = LatestWorker(f"maps-{client_id}", self._stumbled)
         self.hub = Hub(self.worker)

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import logging
 import threading
+import time
 from collections import OrderedDict
 from collections.abc import Callable
 
@@ -21,9 +22,13 @@ class LatestWorker:
     Args:
         name: of the thread.
         on_error: told about an exception of a task (which never ends the thread).
+        settle: seconds to wait before each task, in which newer ones may replace it.
     """
 
-    def __init__(self, name: str, on_error: Callable[[BaseException], None] | None = None) -> None:
+    def __init__(
+        self, name: str, on_error: Callable[[BaseException], None] | None = None, settle: float = 0.0
+    ) -> None:
+        self._settle = settle
         self._tasks: OrderedDict[str, Callable[[], None]] = OrderedDict()
         self._condition = threading.Condition()
         self._closed = False
@@ -70,8 +75,14 @@ class LatestWorker:
                 self._condition.wait_for(lambda: self._closed or bool(self._tasks))
                 if self._closed:
                     return
-                _, task = self._tasks.popitem(last=False)
                 self._busy = True
+            if self._settle:
+                time.sleep(self._settle)
+            with self._condition:
+                if self._closed:
+                    self._busy = False
+                    return
+                _, task = self._tasks.popitem(last=False)
             try:
                 task()
             # A view that stumbles must not take the page down; the user is told, the log keeps the trace.

@@ -97,20 +97,14 @@ def automatic_limits(picture: RunPicture, options: ParetoOptions) -> tuple[Limit
     return padded(x, 0.05), padded(y, 0.07)
 
 
-def pareto_chart(
-    picture: RunPicture,
-    options: ParetoOptions,
-    marks: Sequence[ParetoMark],
-    titles: tuple[str, str],
-    width: float,
-    height: float,
-) -> str:
-    """The chart as SVG.
+def pareto_background(
+    picture: RunPicture, options: ParetoOptions, titles: tuple[str, str], width: float, height: float
+) -> Plot:
+    """All of the chart but the marks that move with the selection: worth keeping while only these move.
 
     Args:
         picture: the run.
         options: what to show.
-        marks: drawn last, in order.
         titles: of the axes.
         width, height: px.
     """
@@ -156,6 +150,18 @@ def pareto_chart(
             row = picture.row(design_id) if design_id is not None else None
             if row is not None:
                 plot.mark(f[row, 0], f[row, 1], shape, size, css, title=f"{word}: design {design_id}")
+    return plot
+
+
+def pareto_chart(picture: RunPicture, background: Plot, marks: Sequence[ParetoMark]) -> str:
+    """The chart as SVG.
+
+    Args:
+        picture: the run.
+        background: of ``pareto_background``; it stays as it is.
+        marks: drawn last, in order.
+    """
+    plot = background.copy()
     for mark in marks:
         plot.mark(mark.f1, mark.f2, mark.shape, mark.size, mark.css, title=mark.title)
     if not len(picture.ids) and len(marks) <= 2:

@@ -5,6 +5,7 @@ Colours come from CSS classes (assets/page.css), so that a chart follows the lig
 
 from __future__ import annotations
 
+import copy
 import html
 import itertools
 import math
@@ -16,6 +17,7 @@ import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
 
+_CROWD = 1500
 Limits = tuple[float, float]
 Array = NDArray[np.float64]
 
@@ -147,6 +149,12 @@ class Plot:
         """Of the area within the axes, px."""
         return self.height - self.margins[2] - self.margins[3]
 
+    def copy(self) -> Plot:
+        """The same plot, to draw further on without changing this one."""
+        other = copy.copy(self)
+        other._elements, other._over = list(self._elements), list(self._over)
+        return other
+
     def px(self, x: ArrayLike) -> Array:
         """Data to px, horizontally."""
         low, high = self.x_limits
@@ -170,8 +178,9 @@ class Plot:
         keep = np.isfinite(px) & np.isfinite(py)
         keep &= (px > self.margins[0] - 9) & (px < self.width - self.margins[1] + 9)
         keep &= (py > self.margins[2] - 9) & (py < self.height - self.margins[3] + 9)
-        # equal pixels are drawn once
-        pixels = np.unique(np.round(np.column_stack([px[keep], py[keep]]), 1), axis=0)
+        # Equal pixels are drawn once; in a crowd whole pixels do, and the browser has a third of it to draw.
+        pixels = np.column_stack([px[keep], py[keep]])
+        pixels = np.unique(np.round(pixels, 1 if len(pixels) <= _CROWD else 0), axis=0)
         if pixels.size:
             path = "".join(f"M{a:g} {b:g}h0" for a, b in pixels)
             self._elements.append(f'<path d="{path}" class="dots {css}" style="stroke-width:{2 * radius:g};{style}"/>')

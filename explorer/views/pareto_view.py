@@ -14,10 +14,11 @@ from explorer.charts.pareto import (
     ParetoOptions,
     automatic_limits,
     front_order,
+    pareto_background,
     pareto_chart,
     pick,
 )
-from explorer.charts.plot import legend
+from explorer.charts.plot import Plot, legend
 from explorer.quantities import objective_title
 from explorer.run_picture import GenerationPicture
 from explorer.state import Session
@@ -37,6 +38,7 @@ class ParetoView:
         self._serial = 0
         self._drawn_limits = ((0.0, 1.0), (0.0, 1.0))
         self._panned: tuple[float, tuple[tuple[float, float], tuple[float, float]]] | None = None
+        self._background: tuple[tuple[object, ...], Plot] | None = None
         self._playing = threading.Event()
         self._hovered: tuple[int, ...] = ()
         self._chart = gui.add_html("")
@@ -103,7 +105,11 @@ class ParetoView:
         self._drawn_limits = options.limits or automatic_limits(picture, options)
         objectives = picture.case.objectives
         titles = (objective_title(objectives.first, "f₁"), objective_title(objectives.second, "f₂"))
-        svg = pareto_chart(picture, options, self._marks(), titles, self._session.chart_width, self._height())
+        # a selection moves a ring; thousands of archive points under it need not be written anew
+        key = (picture, options, titles, session.chart_width, self._height())
+        if self._background is None or not _same(self._background[0], key):
+            self._background = (key, pareto_background(picture, options, titles, session.chart_width, self._height()))
+        svg = pareto_chart(picture, self._background[1], self._marks())
         keys = [("circle", "level1", "level 1 front")]
         if picture.last_of_level(2) is not None:
             keys.append(("circle", "level2", "level 2 front"))
@@ -333,6 +339,11 @@ class ParetoView:
             threading.Event().wait(_STEP_SECONDS)
         self._playing.clear()
         self._session.hub.changed("pareto")
+
+
+def _same(first: tuple[object, ...], second: tuple[object, ...]) -> bool:
+    """Whether the very same picture (arrays are not compared) is drawn in the same way."""
+    return first[0] is second[0] and first[1:] == second[1:]
 
 
 def _generation_words(generation: GenerationPicture | None, count: int) -> str:
