@@ -34,7 +34,14 @@ class CameraPose:
 
 
 def preset(
-    name: str, length: float, breadth: float, draft: float, shaft: tuple[float, float], diameter: float, aspect: float
+    name: str,
+    length: float,
+    breadth: float,
+    draft: float,
+    shaft: tuple[float, float],
+    diameter: float,
+    aspect: float,
+    abeam: float = 0.0,
 ) -> CameraPose:
     """A preset for a ship of this size: all of it in the picture, as large as the 3D view allows.
 
@@ -44,6 +51,7 @@ def preset(
         shaft: x of the propeller's centre and height of the shaft, m.
         diameter: of the propeller, m.
         aspect: width over height of the 3D view.
+        abeam: how far to port another ship lies, m.
     """
     if name == "propeller":
         look = (shaft[0] + 0.05 * diameter, 0.0, shaft[1] + 0.02 * diameter)
@@ -51,7 +59,7 @@ def preset(
         return CameraPose((look[0] - 0.86 * reach, -0.52 * reach, look[2] + 0.10 * reach), look, _UP, 0.75)
     # what has to be seen: from the counter to the bulb, from the keel to the deck of the parent
     x0, x1, deck = -0.03 * length, 1.025 * length, 2.4 * draft
-    corners = np.array([(x, y, z) for x in (x0, x1) for y in (-breadth / 2, breadth / 2) for z in (0.0, deck)])
+    corners = np.array([(x, y, z) for x in (x0, x1) for y in (-breadth / 2, breadth / 2 + abeam) for z in (0.0, deck)])
     # a narrow view looks along the ship more than across it
     side = float(np.interp(aspect, (0.6, 1.8), (0.66, 1.75)))
     # Profile, plan and body use a long lens from far away: nearly the parallel projection of a lines drawing.

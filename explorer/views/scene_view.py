@@ -28,6 +28,8 @@ WATERLINE = (235, 240, 245)
 # the sea reaches this many ship lengths from midships
 _SEA_LENGTHS = 1.15
 _GHOST_OPACITY = 0.28
+# a ghost beside the selected ship lies this many breadths to port
+_ABEAM = 1.5
 # the propeller turns at a quarter of its real rate: a screen cannot show 100 rpm of five blades
 _SPIN_SCALE = 0.25
 _FRAME_SECONDS = 1.0 / 25.0
@@ -46,6 +48,7 @@ class SceneView:
         self._framed: tuple[float, float, float] | None = None
         self._placed: np.ndarray | None = None
         self._told, self._docked = 0.0, False
+        self._abeam = 0.0
         self._spinning = threading.Event()
         self._dark: bool | None = None
         self.shown_design: object = None
@@ -80,6 +83,7 @@ class SceneView:
             options.ghost,
             ghost.key if ghost else None,
             ghost_colour,
+            options.beside,
             options.topsides,
             options.water,
             options.waves,
@@ -100,6 +104,7 @@ class SceneView:
                 session.notify("No geometry for this design", str(error), "yellow")
                 return
             before, self._framed = self._framed, _bounds(geometry, behind[0] if behind else None)
+            was_abeam, self._abeam = self._abeam, _ABEAM * self._framed[1] if behind and options.beside else 0.0
             self._geometry = geometry
             with self._client.atomic():
                 self._draw_ship(geometry, behind, ghost_colour)
@@ -107,7 +112,8 @@ class SceneView:
             self._drawn = state
             self.shown_design = shown.design_id if shown.design_id is not None else shown.kind
             # A ship of another size is framed anew, unless the user has moved the camera.
-            if before is None or (abs(before[0] - self._framed[0]) > 0.02 * before[0] and self._unmoved()):
+            other = before is None or abs(before[0] - self._framed[0]) > 0.02 * before[0] or was_abeam != self._abeam
+            if before is None or (other and self._unmoved()):
                 self.place_camera()
         self._spin()
 
@@ -134,6 +140,10 @@ class SceneView:
         self._water(geometry, options.water and not close_up and not options.waves)
         if ghost is not None:
             shell, lines = ghost
+            berth = self._handles.get("berth")
+            if berth is None:
+                berth = self._handles["berth"] = self._client.scene.add_frame("/ghost", show_axes=False)
+            berth.position = (0.0, self._abeam, 0.0)
             self._mesh("ghost below", "/ghost/below", *shell.underwater, color=ghost_colour, opacity=_GHOST_OPACITY)
             self._mesh(
                 "ghost above",
@@ -254,6 +264,7 @@ class SceneView:
             (float(geometry.propeller_position[0]), float(geometry.propeller_position[2])),
             geometry.diameter,
             self._aspect(),
+            self._abeam,
         )
         camera = self._client.camera
         with self._client.atomic():

@@ -19,6 +19,7 @@ from explorer.views.tables import headline
 
 _SWITCHES = (
     ("ghost", "Ghost", "the initial design beside the selected one; choose another in Compare"),
+    ("beside", "Beside", "the ghost abeam, to port, instead of around the selected hull"),
     ("topsides", "Topsides", "the hull above the waterline"),
     ("water", "Water", "the water surface"),
     ("waves", "Waves", "wave pattern at the chosen condition"),
@@ -48,7 +49,9 @@ class ToolbarView:
         options = self._session.options
         cameras = "".join(chip("camera", TITLES[name], name, on=options.camera == name) for name in PRESETS)
         switches = "".join(
-            chip("switch", word, name, on=bool(getattr(options, name)), hint=hint) for name, word, hint in _SWITCHES
+            chip("switch", word, name, on=bool(getattr(options, name)), hint=hint)
+            for name, word, hint in _SWITCHES
+            if name != "beside" or options.ghost
         )
         shown = self._session.selected
         conditions = ""

@@ -170,6 +170,14 @@ def test_no_preset_cuts_the_ship(name: str, aspect: float):
     assert max(np.ptp(across), np.ptp(up)) > 1.7
 
 
+@pytest.mark.parametrize("name", ["perspective", "plan", "body", "below"])
+def test_a_ship_abeam_is_in_the_picture_too(name: str):
+    pose = preset(name, 355.0, 51.0, 14.5, (7.5, 5.0), 9.0, 0.7, 76.5)
+    corners = np.array([(x, y, z) for x in (-5.0, 362.0) for y in (-25.5, 102.0) for z in (0.0, 34.0)])
+    across, up = _seen(pose, corners, 0.7)
+    assert np.abs(across).max() < 1.0 and np.abs(up).max() < 1.0
+
+
 @pytest.mark.parametrize("aspect", [0.5, 0.7, 1.6])
 def test_the_close_up_shows_the_whole_propeller(aspect: float):
     pose = preset("propeller", 355.0, 51.0, 14.5, (7.5, 5.0), 9.0, aspect)
