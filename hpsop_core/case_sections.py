@@ -182,6 +182,9 @@ class OptimizationSection:
         "penalty", ("penalty", "feasibility_first"), "penalty: F = f + factor sum max(0, g), as the paper"
     )
     penalty_factor: float = number(10.0, 0.0, 1e6, "factor of the penalty")
+    handover_margin: float = number(
+        0.02, 0.0, 0.5, "before level 2 comes the search keeps Keller's criterion by this much expanded area ratio"
+    )
     reseed_share: float = number(0.2, 0.0, 1.0, "share of the population sampled anew when level 2 begins")
     keep_initial: bool = flag(True, "the initial design's projection is always in the sample of either level")
     stagnation_window: int = integer(30, 2, 100000, "generations over which level 1's hypervolume must still grow")

@@ -84,6 +84,7 @@ CASE_FIELDS: tuple[tuple[str, tuple[tuple[str, str, str], ...]], ...] = (
             ("optimization", "mutation_eta", "Mutation index"),
             ("optimization", "constraint_handling", "Constraints"),
             ("optimization", "penalty_factor", "Penalty factor"),
+            ("optimization", "handover_margin", "Hand-over margin"),
             ("optimization", "reseed_share", "Re-seeded"),
             ("optimization", "keep_initial", "Keep initial"),
             ("optimization", "stagnation_window", "Stagnation over"),
@@ -104,6 +105,7 @@ STEPS = {
     "crossover_eta": 0.1,
     "mutation_eta": 0.1,
     "evaluation_time_limit": 0.1,
+    "handover_margin": 0.001,
     "stagnation_tolerance": 1e-4,
     "buoyancy_centre_shift": 1e-4,
 }

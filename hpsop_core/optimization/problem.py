@@ -52,12 +52,14 @@ class Outcome:
         objectives: (f1, f2), never penalised; None if the evaluation failed.
         violations: max(0, g) for each constraint that applies, and for infeasibility outside them.
         feasible: every g <= ``FEASIBILITY_TOLERANCE`` and nothing else against the design.
+        cavitation: g3 with its sign, None where it is not applied.
     """
 
     evaluation_id: int
     objectives: tuple[float, float] | None
     violations: tuple[float, ...]
     feasible: bool
+    cavitation: float | None = None
 
     @property
     def failed(self) -> bool:
@@ -79,20 +81,32 @@ class Outcome:
         violations = tuple(max(0.0, float(g)) for g in constraints)
         if within and not feasible:
             violations = (*violations, UNNAMED_VIOLATION)
-        return cls(evaluation_id, (float(f1), float(f2)), violations, feasible)
+        return cls(evaluation_id, (float(f1), float(f2)), violations, feasible, data["constraints"].get("cavitation"))
+
+    def violation(self, cavitation_margin: float) -> float:
+        """Sum of the violations when Keller's criterion must be kept by a margin, in expanded area ratio."""
+        total = math.fsum(self.violations)
+        if self.cavitation is None:
+            return total
+        return total + max(0.0, self.cavitation + cavitation_margin) - max(0.0, self.cavitation)
 
 
-def algorithm_view(outcomes: list[Outcome], handling: str, penalty_factor: float) -> tuple[Array, Array]:
+def algorithm_view(
+    outcomes: list[Outcome], handling: str, penalty_factor: float, cavitation_margin: float = 0.0
+) -> tuple[Array, Array]:
     """Objectives and constraint values as NSGA-II sees them; always finite.
 
     With ``handling`` "penalty" (the paper) F_i = f_i + penalty_factor * sum max(0, g_j) and only a failed evaluation
     is infeasible. With "feasibility_first" F_i = f_i, and the sum of the violations is the constraint: a feasible
     design beats an infeasible one, of two infeasible ones the lesser violation wins (Deb et al. 2002).
 
+    With a margin the *search* asks g3 + margin <= 0, where g3 is applied; what is reported stays g3.
+
     Args:
         outcomes: n outcomes.
         handling: "penalty" or "feasibility_first".
         penalty_factor: of the penalty.
+        cavitation_margin: in expanded area ratio.
 
     Returns:
         F of shape (n, 2) and G of shape (n, 1); a design is infeasible for the algorithm if G > 0.
@@ -102,11 +116,11 @@ def algorithm_view(outcomes: list[Outcome], handling: str, penalty_factor: float
     for row, outcome in enumerate(outcomes):
         if outcome.objectives is None:
             continue
-        violation = math.fsum(outcome.violations)
+        violation = outcome.violation(cavitation_margin)
         if handling == "penalty":
             objectives[row] = np.array(outcome.objectives) + penalty_factor * violation
             constraint[row] = 0.0
         else:
             objectives[row] = outcome.objectives
-            constraint[row] = 0.0 if outcome.feasible else violation
+            constraint[row] = 0.0 if outcome.feasible and violation <= FEASIBILITY_TOLERANCE else violation
     return objectives, constraint

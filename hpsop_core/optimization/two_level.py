@@ -143,7 +143,9 @@ class TwoLevelSearch:
         for candidate, outcome in zip(self._asked, outcomes, strict=True):
             self._outcomes[outcome.evaluation_id] = outcome
             self._variables[outcome.evaluation_id] = candidate.variables
-        view = algorithm_view(list(outcomes), settings.constraint_handling, settings.penalty_factor)
+        # Level 2 finds a little more thrust: designs bred on level 1's limit of cavitation would be beyond level 2's.
+        margin = settings.handover_margin if self._level == 1 and self._level1_generations < self._generations else 0.0
+        view = algorithm_view(list(outcomes), settings.constraint_handling, settings.penalty_factor, margin)
         self._algorithm.tell([outcome.evaluation_id for outcome in outcomes], *view)
         self._archive.add(outcomes)
         self._archive_hypervolumes.append(hypervolume(self._archive.objectives))

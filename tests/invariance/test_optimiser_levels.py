@@ -52,6 +52,8 @@ def test_level_2_ends_on_a_whole_front_for_every_seed(tmp_path: Path) -> None:
     union = FrontArchive()
     for run in runs:
         assert_level_2_begins_feasible(run, level1=30)
+        # Bred with the hand-over margin what is handed over, four fifths, stays feasible but for a design or two.
+        assert run.generations()[30].feasible_share >= 0.75
         for record in run.front():
             f = record.evaluation.objectives
             union.add([Outcome(record.id, (f["f1"], f["f2"]), (), True)])

@@ -11,10 +11,12 @@ import pytest
 from hpsop_core.case import Case, load_case
 from hpsop_core.design import DesignVariables
 from hpsop_core.errors import InputError
+from hpsop_core.optimization import two_level
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.indicators import hypervolume
 from hpsop_core.optimization.problem import FAILED_VIOLATION, Candidate, Outcome, algorithm_view
 from hpsop_core.optimization.two_level import TwoLevelSearch
+from hpsop_core.typing_aliases import Array
 
 
 def answer(case: Case, candidate: Candidate) -> tuple[tuple[float, float], tuple[float, ...]]:
@@ -209,6 +211,34 @@ def test_the_penalty_is_the_papers_and_reported_objectives_stay_without_it() -> 
         objectives, constraint = algorithm_view([failed], handling, 10.0)
         assert constraint[0, 0] == FAILED_VIOLATION
         assert all(math.isfinite(value) for value in objectives[0])
+
+
+def test_the_hand_over_margin_tightens_what_the_search_sees_and_nothing_that_is_reported() -> None:
+    kept = Outcome(1, (0.9, 0.8), (0.0, 0.0), True, cavitation=-0.015)
+    broken = Outcome(2, (0.9, 0.8), (0.0, 0.03), False, cavitation=0.03)
+    free = Outcome(3, (0.9, 0.8), (0.0,), True)
+    objectives, _ = algorithm_view([kept, broken, free], "penalty", 10.0, 0.02)
+    # 10 (g3 + margin), once: two-digit decimals, rounding only.
+    assert objectives[:, 0] == pytest.approx([0.95, 1.4, 0.9], abs=1e-14)
+    _, constraint = algorithm_view([kept, broken, free], "feasibility_first", 10.0, 0.02)
+    assert constraint[:, 0] == pytest.approx([0.005, 0.05, 0.0], abs=1e-15)
+    without, _ = algorithm_view([kept], "penalty", 10.0)
+    assert without[0, 0] == 0.9 and kept.feasible
+
+
+@pytest.mark.parametrize(("level1", "margins"), [(4, [0.02] * 4 + [0.0] * 2), (6, [0.0] * 6)])
+def test_the_margin_holds_where_level_2_is_to_come(
+    monkeypatch: pytest.MonkeyPatch, level1: int, margins: list[float]
+) -> None:
+    seen: list[float] = []
+
+    def watched(outcomes: list[Outcome], handling: str, factor: float, margin: float) -> tuple[Array, Array]:
+        seen.append(margin)
+        return algorithm_view(outcomes, handling, factor, margin)
+
+    monkeypatch.setattr(two_level, "algorithm_view", watched)
+    Play(small_case(population=8, generations=6, level1_generations=level1))
+    assert seen == margins
 
 
 def test_constraints_that_do_not_apply_are_left_out_and_feasibility_has_its_tolerance() -> None:
