@@ -12,10 +12,12 @@ from explorer.bridge import PageEvent, overlay
 from explorer.charts.plot import escape
 from explorer.quantities import number_text
 from explorer.scene.camera import PRESETS, TITLES
-from explorer.state import Session
+from explorer.state import Session, Shown
 from explorer.views.chips import chip, chips
 from explorer.views.slot import Slot
 from explorer.views.tables import headline
+from hpsop_core.errors import HpsopError
+from hpsop_core.export.design_files import zip_design
 
 _SWITCHES = (
     ("ghost", "Ghost", "the initial design beside the selected one; choose another in Compare"),
@@ -41,6 +43,7 @@ class ToolbarView:
         session.handle("act", "switch", self._switch)
         session.handle("act", "condition", self._condition)
         session.handle("act", "screenshot", self._screenshot)
+        session.handle("act", "take_away", self._take_away)
         self.draw()
         self.draw_card()
 
@@ -68,7 +71,11 @@ class ToolbarView:
             )
         if not (options.waves or options.pressure or options.spin):
             conditions = ""
-        other = chip("switch", "Dark", "dark", on=options.dark) + chip("screenshot", "Screenshot")
+        other = (
+            chip("switch", "Dark", "dark", on=options.dark)
+            + chip("screenshot", "Screenshot")
+            + chip("take_away", "CAD files", hint="the shown design as Rhino, DXF, STL, GLB, CSV and JSON in one ZIP")
+        )
         self._bar.show(
             overlay(
                 "toolbar",
@@ -127,6 +134,24 @@ class ToolbarView:
     def _screenshot(self, _event: PageEvent) -> None:
         self._session.heavy.latest("screenshot", self._take)
 
+    def _take_away(self, _event: PageEvent) -> None:
+        shown = self._session.selected
+        if shown is None or not shown.evaluation.ok:
+            self._session.notify("No files", "a design that failed has no shape; select another one", "yellow")
+            return
+        self._session.notify("Writing the files", f"{shown.label}: the download begins in some seconds", "green")
+        self._session.heavy.latest("take away", lambda: self._export(shown))
+
+    def _export(self, shown: Shown) -> None:
+        case, evaluation = self._session.picture.case, shown.evaluation
+        try:
+            reference = self._session.app.services.physics.reference(case, evaluation.level)
+            archive = zip_design(case, evaluation, shown.label[0].lower() + shown.label[1:], reference)
+        except HpsopError as error:
+            self._session.notify("No files", str(error), "red")
+            return
+        self._client.send_file_download(f"{_file_name(shown)}.zip", archive, save_immediately=True)
+
     def _take(self) -> None:
         width, height = self._session.size
         try:
@@ -141,6 +166,9 @@ class ToolbarView:
             return
         picture = io.BytesIO()
         Image.fromarray(image).save(picture, format="PNG")
-        shown = self._session.selected
-        name = f"hpsop-{shown.design_id if shown and shown.design_id is not None else 'design'}.png"
+        name = f"{_file_name(self._session.selected)}.png"
         self._client.send_file_download(name, picture.getvalue(), save_immediately=True)
+
+
+def _file_name(shown: Shown | None) -> str:
+    return f"hpsop-{shown.design_id if shown and shown.design_id is not None else 'design'}"

@@ -6,9 +6,10 @@ import json
 import os
 import shutil
 import tempfile
-from collections.abc import Callable, Sequence
+from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
+from typing import Any
 
 from hpsop_core import __version__
 from hpsop_core.case import Case
@@ -19,7 +20,6 @@ from hpsop_core.export import tables
 from hpsop_core.geometry.hull import Hull
 from hpsop_core.geometry.propeller import Propeller
 from hpsop_core.runs.reader import RunReader
-from hpsop_core.runs.records import DesignRecord
 
 FORMATS = ("stl", "glb", "3dm", "dxf", "csv", "json")
 
@@ -54,14 +54,12 @@ _MEANING = {
 @dataclass(frozen=True, eq=False)
 class _Design:
     case: Case
-    record: DesignRecord
-    reference: Callable[[], Reference]
+    evaluation: Evaluation
+    label: str
+    document: dict[str, Any]
+    reference: Reference
     hull: Hull
     propeller: Propeller
-
-    @property
-    def evaluation(self) -> Evaluation:
-        return self.record.evaluation
 
 
 def export_design(
@@ -91,37 +89,54 @@ def export_design(
         )
     target = Path(folder)
     _check_target(target, force)
-    case, variables = run.case, record.evaluation.variables
+    level = record.evaluation.level
+    stored = run.reference(level)
+    reference = reference_for(run.case, level) if stored is None else Reference.from_dict(stored)
+    data = _design(run.case, record.evaluation, f"design {record.id}", record.as_dict(), reference)
+    return _written(data, target, wanted)
 
-    def reference() -> Reference:
-        level = record.evaluation.level
-        stored = run.reference(level)
-        return reference_for(case, level) if stored is None else Reference.from_dict(stored)
 
-    data = _Design(case, record, reference, design_hull(case, variables), design_propeller(case, variables))
+def zip_design(
+    case: Case, evaluation: Evaluation, label: str, reference: Reference, formats: Sequence[str] = FORMATS
+) -> bytes:
+    """The files of ``export_design`` as one ZIP archive, for a download.
+
+    Args:
+        case: that the design belongs to.
+        evaluation: the design, one that did not fail; it need not stand in a run.
+        label: its name in the files, for example "design 12".
+        reference: of the case at the evaluation's level.
+        formats: any of ``FORMATS``.
+
+    Raises:
+        InputError: an unknown format, or no room for the files.
+        SolverFailure: the form or its resistance curve cannot be computed.
+    """
+    wanted = checked_formats(formats)
+    data = _design(case, evaluation, label, evaluation.as_dict(), reference)
+    with tempfile.TemporaryDirectory(prefix="hpsop-export-") as workshop:
+        folder = Path(workshop) / "design"
+        _written(data, folder, wanted)
+        return Path(shutil.make_archive(str(Path(workshop) / "archive"), "zip", folder)).read_bytes()
+
+
+def _design(case: Case, evaluation: Evaluation, label: str, document: dict[str, Any], reference: Reference) -> _Design:
+    hull, propeller = design_hull(case, evaluation.variables), design_propeller(case, evaluation.variables)
+    return _Design(case, evaluation, label, document, reference, hull, propeller)
+
+
+def _written(data: _Design, target: Path, formats: Sequence[str]) -> tuple[Path, ...]:
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         # On the same file system as the target, so that every file appears whole or not at all.
         with tempfile.TemporaryDirectory(prefix=".hpsop-export-", dir=target.parent) as workshop:
-            made = _write(data, Path(workshop), wanted)
+            made = _write(data, Path(workshop), formats)
             target.mkdir(exist_ok=True)
             for file in made:
                 os.replace(file, target / file.name)
     except OSError as error:
         raise InputError(f"{target}: cannot be written ({error.strerror or error}); choose another folder") from error
     return tuple(target / file.name for file in made)
-
-
-def zip_design(run: RunReader, design: int | str, formats: Sequence[str] = FORMATS) -> bytes:
-    """The files of ``export_design`` as one ZIP archive, for a download.
-
-    Raises:
-        InputError, SolverFailure: as ``export_design``.
-    """
-    with tempfile.TemporaryDirectory(prefix="hpsop-export-") as workshop:
-        folder = Path(workshop) / "design"
-        export_design(run, design, folder, formats)
-        return Path(shutil.make_archive(str(Path(workshop) / "archive"), "zip", folder)).read_bytes()
 
 
 def checked_formats(formats: Sequence[str]) -> tuple[str, ...]:
@@ -175,11 +190,11 @@ def _write(design: _Design, folder: Path, formats: Sequence[str]) -> list[Path]:
             "offsets.csv": tables.offsets_table(design.hull),
             "propeller.csv": tables.propeller_table(design.propeller),
             "hydrostatics.csv": tables.hydrostatics_table(design.hull),
-            "resistance.csv": tables.resistance_table(design.case, design.evaluation, design.reference()),
+            "resistance.csv": tables.resistance_table(design.case, design.evaluation, design.reference),
             "open_water.csv": tables.open_water_table(design.evaluation),
         }
     if "json" in formats:
-        texts["design.json"] = json.dumps(design.record.as_dict(), indent=1, allow_nan=False) + "\n"
+        texts["design.json"] = json.dumps(design.document, indent=1, allow_nan=False) + "\n"
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
     made = sorted(folder.iterdir(), key=lambda file: list(_MEANING).index(file.name))
@@ -198,7 +213,7 @@ def _write(design: _Design, folder: Path, formats: Sequence[str]) -> list[Path]:
 def _title(design: _Design) -> str:
     h, p = design.hull, design.propeller
     return (
-        f"{design.case.name}, design {design.record.id} (level {design.evaluation.level}): "
+        f"{design.case.name}, {design.label} (level {design.evaluation.level}): "
         f"L {h.length:.2f} m, B {h.breadth:.2f} m, d {h.draft:.2f} m, CB {h.hydrostatics.block_coefficient:.4f}; "
         f"propeller D {p.diameter:.3f} m, Z {p.blade_count}, P/D at 0.7 R {p.pitch_diameter_ratio_07R:.4f}, "
         f"EAR {p.expanded_area_ratio:.3f}"

