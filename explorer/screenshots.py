@@ -20,7 +20,7 @@ from typing import Any
 from PIL import Image
 
 from explorer.app import Explorer, demonstration
-from explorer.run_picture import FAILED, FINISHED, PAUSED
+from explorer.run_picture import ACTIVE, FAILED, FINISHED, PAUSED
 from explorer.security import free_port
 from hpsop_core.case import load_case
 
@@ -57,8 +57,14 @@ class Photographer:
     def press(self, action: str, argument: str | None = None, pause: float = 1.0) -> None:
         """Press a button of the page; forced, because a page that software draws is never still."""
         extra = f'[data-arg="{argument}"]' if argument is not None else ""
-        self._page.locator(f'[data-act="{action}"]{extra}:visible').first.click(force=True)
+        button = self._page.locator(f'[data-act="{action}"]{extra}:visible').first
+        before = button.get_attribute("aria-pressed")
+        button.click(force=True)
         time.sleep(pause)
+        if action == "switch" and button.get_attribute("aria-pressed") == before:
+            # lost while the page was being drawn
+            button.click(force=True)
+            time.sleep(pause)
 
     def tab(self, name: str, pause: float = 0.8) -> None:
         """Choose a tab of a panel."""
@@ -90,15 +96,17 @@ class Photographer:
             self.press("tab", name, 4.0)
             raw = self._page.locator(f'[data-chart-tab="{name}"]').screenshot(timeout=180_000)
             drawn.append(Image.open(io.BytesIO(raw)).convert("RGB"))
+        # each into the column that is the shortest so far
         width = max(image.width for image in drawn) + _GAP
-        rows = [drawn[first : first + columns] for first in range(0, len(drawn), columns)]
-        heights = [max(image.height for image in row) + _GAP for row in rows]
-        sheet = Image.new("RGB", (width * columns + _GAP, sum(heights) + _GAP), drawn[0].getpixel((0, 0)))
-        top = _GAP
-        for row, height in zip(rows, heights, strict=True):
-            for column, image in enumerate(row):
-                sheet.paste(image, (_GAP + column * width, top))
-            top += height
+        ends = [_GAP] * columns
+        places = []
+        for image in drawn:
+            column = ends.index(min(ends))
+            places.append((_GAP + column * width, ends[column]))
+            ends[column] += image.height + _GAP
+        sheet = Image.new("RGB", (width * columns + _GAP, max(ends)), drawn[0].getpixel((0, 0)))
+        for image, place in zip(drawn, places, strict=True):
+            sheet.paste(image, place)
         self._save(sheet, "charts")
 
     def resize(self, width: int, height: int) -> None:
@@ -145,6 +153,16 @@ def _states_of_a_run(explorer: Explorer, camera: Photographer) -> None:
     camera.press("run_resume")
     _wait(lambda: explorer.state.picture.status == FINISHED, 900.0)
     time.sleep(1.0)
+
+
+def _begun_and_stopped(explorer: Explorer, camera: Photographer) -> None:
+    camera.take("ready")
+    camera.press("run_start")
+    _wait(lambda: len(explorer.state.picture.generations) >= 8, 240.0)
+    camera.take("running")
+    camera.press("run_stop")
+    _wait(lambda: explorer.state.picture.status not in ACTIVE, 60.0)
+    time.sleep(2.0)
 
 
 def _failed_run(explorer: Explorer, camera: Photographer, folder: Path) -> None:
@@ -200,7 +218,7 @@ def _for_the_docs(camera: Photographer) -> None:
     camera.press("switch", "dark", 2.0)
     camera.press("switch", "waves", 1.0)
     camera.resize(1366, 1600)
-    camera.charts(("open_water", "thrust", "resistance", "lines", "parallel", "convergence"), 3)
+    camera.charts(("lines", "resistance", "open_water", "thrust", "convergence", "parallel"), 3)
 
 
 def _charts(camera: Photographer) -> None:
@@ -250,8 +268,14 @@ def main(argv: Sequence[str] | None = None) -> int:
         return 2
     width, height = _SIZES["-large" if arguments.large else ""]
     suffix = ("-large" if arguments.large else "") + ("-dark" if arguments.dark else "")
-    case = load_case("dtc-p4119").replaced("optimization", population=20, generations=24, level1_generations=18)
-    shown = arguments.run or (demonstration() if arguments.states == "tour" else None)
+    case = load_case("dtc-p4119")
+    if not arguments.docs:
+        case = case.replaced("optimization", population=20, generations=24, level1_generations=18)
+    chosen = arguments.run or (demonstration() if arguments.docs or arguments.states == "tour" else None)
+    if arguments.docs and chosen is None:
+        sys.stderr.write("--docs shows a finished run: name one with --run\n")
+        return 2
+    shown = None if arguments.docs else chosen
     names = ("chromium", "chromium-browser", "google-chrome")
     program = next((path for name in names if (path := shutil.which(name))), None)
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
@@ -267,15 +291,16 @@ def main(argv: Sequence[str] | None = None) -> int:
             camera = Photographer(page, arguments.to, suffix, _DOCS if arguments.docs else None)
             if arguments.dark:
                 camera.press("switch", "dark", 4.0)
-            if shown is None:
-                _states_of_a_run(explorer, camera)
             if arguments.docs:
+                _begun_and_stopped(explorer, camera)
+                explorer.services.open(chosen, read_only=True)
+                time.sleep(6.0)
                 _for_the_docs(camera)
-            else:
-                if shown is None:
-                    _failed_run(explorer, camera, Path(folder))
-                if arguments.states != "run":
-                    _tour(camera)
+            elif shown is None:
+                _states_of_a_run(explorer, camera)
+                _failed_run(explorer, camera, Path(folder))
+            if not arguments.docs and arguments.states != "run":
+                _tour(camera)
             browser.close()
         finally:
             explorer.close()

@@ -316,9 +316,14 @@ def convergence_chart(
 
 
 def best_chart(
-    numbers: Sequence[int], best: Sequence[tuple[float, float]], total: int, width: float, height: float
+    numbers: Sequence[int],
+    levels: Sequence[int],
+    best: Sequence[tuple[float, float]],
+    total: int,
+    width: float,
+    height: float,
 ) -> str:
-    """The least feasible f1 and f2 of each generation's front."""
+    """The least feasible f1 and f2 of each generation's front; each level divides by its own initial design."""
     values = np.asarray(best, dtype=float).reshape(-1, 2)
     plot = Plot(
         width,
@@ -329,7 +334,10 @@ def best_chart(
         "least objective on the front [–]",
         margins=(56, 14, 8, 34),
     )
-    if values.size:
-        plot.line(numbers, values[:, 0], "pin1", title="least f1")
-        plot.line(numbers, values[:, 1], "pin2", title="least f2")
+    for level in (1, 2):
+        at = np.flatnonzero(np.asarray(levels) == level)
+        for column, css in ((0, "pin1"), (1, "pin2")):
+            if at.size:
+                title = f"least f{column + 1}, level {level}"
+                plot.line(np.asarray(numbers)[at], values[at, column], css, title=title)
     return plot.svg("best") + legend([("line", "pin1", "least f₁"), ("line", "pin2", "least f₂")])

@@ -117,7 +117,7 @@ def _convergence(session: Session) -> str:
     note = '<p class="soft">Hypervolume of the feasible front against (1.2, 1.2); each level has its own series.</p>'
     return (
         convergence_chart(numbers, levels, values, picture.total_generations, session.chart_width, height)
-        + best_chart(numbers, best, picture.total_generations, session.chart_width, height)
+        + best_chart(numbers, levels, best, picture.total_generations, session.chart_width, height)
         + note
     )
 

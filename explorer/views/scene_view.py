@@ -28,8 +28,8 @@ WATERLINE = (235, 240, 245)
 # the sea reaches this many ship lengths from midships
 _SEA_LENGTHS = 1.15
 _GHOST_OPACITY = 0.28
-# a ghost beside the selected ship lies this many breadths to port
-_ABEAM = 1.5
+# a ghost beside the selected ship lies this many breadths to port, and is nearly solid
+_ABEAM, _ABEAM_OPACITY = 1.5, 0.85
 # the propeller turns at a quarter of its real rate: a screen cannot show 100 rpm of five blades
 _SPIN_SCALE = 0.25
 _FRAME_SECONDS = 1.0 / 25.0
@@ -144,13 +144,15 @@ class SceneView:
             if berth is None:
                 berth = self._handles["berth"] = self._client.scene.add_frame("/ghost", show_axes=False)
             berth.position = (0.0, self._abeam, 0.0)
-            self._mesh("ghost below", "/ghost/below", *shell.underwater, color=ghost_colour, opacity=_GHOST_OPACITY)
+            opacity = _ABEAM_OPACITY if options.beside else _GHOST_OPACITY
+            topsides = shell.topsides if options.beside else without_deck(shell.topsides)
+            self._mesh("ghost below", "/ghost/below", *shell.underwater, color=ghost_colour, opacity=opacity)
             self._mesh(
                 "ghost above",
                 "/ghost/above",
-                *without_deck(shell.topsides),
+                *topsides,
                 color=ghost_colour,
-                opacity=_GHOST_OPACITY,
+                opacity=opacity,
                 visible=options.topsides,
             )
             self._lines("ghost lines", "/ghost/lines", lines, ghost_colour, 1.0)
@@ -190,6 +192,8 @@ class SceneView:
             handle.vertices = vertices.astype(np.float32)
             if tuple(handle.color) != color:
                 handle.color = color
+            if handle.opacity != opacity:
+                handle.opacity = opacity
         if handle.visible != visible:
             handle.visible = visible
 
@@ -240,16 +244,18 @@ class SceneView:
 
     def _aspect(self) -> float:
         """Width over height of the 3D view: the browser's own word once the docks stand, till then what they leave."""
+        return self._told if self._docked else self._between_docks()
+
+    def _between_docks(self) -> float:
         session = self._session
         width, height = session.size
-        left = max(width - LEFT_DOCK - session.dock_width, 200.0) / max(height, 200.0)
-        return self._told if self._docked and self._told > 0.0 else left
+        return max(width - LEFT_DOCK - session.dock_width, 200.0) / max(height, 200.0)
 
     def _looked(self, camera: viser.CameraHandle) -> None:
         """The browser says where its camera is: a view of another shape is framed anew, unless the user has moved."""
         before, self._told = self._told, float(camera.aspect)
-        width, height = self._session.size
-        self._docked = self._docked or self._told < 0.9 * width / height
+        # one dock appears after the other, and a browser does not say so while its camera rests
+        self._docked = self._docked or 0.0 < self._told < 1.1 * self._between_docks()
         if self._docked and abs(self._told - before) > 0.02 * self._told and self._unmoved():
             self._session.worker.latest("camera", self.place_camera)
 
