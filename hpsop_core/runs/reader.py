@@ -227,7 +227,7 @@ class RunReader:
         for number in (level, 3 - level):
             with contextlib.suppress(InputError):
                 return self.designs([number])[0]
-        raise InputError(f"{self.path}: its initial design is not evaluated yet; wait a moment")
+        raise InputError(f"{self.path}: its initial design is not evaluated yet; let the run go on")
 
     def front(self, generation: int | None = None) -> tuple[DesignRecord, ...]:
         """The Pareto front of a generation (the last one by default), ascending in f1; empty while there is none."""
