@@ -53,7 +53,36 @@
     if (H.channelId !== channelId) { H.channelId = channelId; H.outbox = []; }
     H.send({ t: "hello", browser: H.browser, width: innerWidth, height: innerHeight });
     place();
+    // panels mount one after another
+    [100, 500, 1500].forEach((delay) => setTimeout(restoreTabs, delay));
   };
+
+  // ---- which tab of a panel was open: viser forgets it when the server starts anew --------------------------------
+  const listsOfTabs = () => Array.from(document.querySelectorAll("[role=tablist]"), (list) => {
+    const tabs = Array.from(list.querySelectorAll("[role=tab]"));
+    return { tabs, key: "hpsop-tab " + tabs.map((tab) => tab.textContent.trim()).join("|") };
+  });
+  function saveTabs() {
+    if (!storage) return;
+    listsOfTabs().forEach(({ tabs, key }) => {
+      const open = tabs.find((tab) => tab.getAttribute("aria-selected") === "true");
+      if (open) storage.setItem(key, open.textContent.trim());
+    });
+  }
+  function restoreTabs() {
+    if (!storage) return;
+    listsOfTabs().forEach(({ tabs, key }) => {
+      const tab = tabs.find((item) => item.textContent.trim() === storage.getItem(key));
+      if (!tab || tab.getAttribute("aria-selected") === "true") return;
+      // a dock's tab listens to the pointer (it may be dragged) and to Enter, an ordinary one to clicks
+      if (tab.hasAttribute("data-dock-tab"))
+        tab.dispatchEvent(new KeyboardEvent("keydown", { key: "Enter", bubbles: true }));
+      else tab.click();
+    });
+  }
+  ["pointerup", "keyup"].forEach((type) => listen(document, type, (event) => {
+    if (event.target.closest && event.target.closest("[role=tab]")) setTimeout(saveTabs, 120);
+  }, true));
 
   // ---- charts --------------------------------------------------------------------------------------------------
   const chartOf = (node) => (node && node.closest ? node.closest("svg[data-chart]") : null);
