@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import importlib
 import io
 import json
 import logging
@@ -33,6 +34,7 @@ from hpsop_core.case import DEFAULT_CASE, Case, load_case
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.runs.reader import open_run
 
+_IMPORT_SECONDS = 4.0
 _MEMORY_FILE = "page.json"
 
 
@@ -89,6 +91,10 @@ class Explorer:
         self.server.on_client_disconnect(self._disconnect)
         # The initial design stands ready when the first browser asks.
         worker.latest("initial", self._warm_up)
+        # The search's imports hold the interpreter for a second: not while the page loads, nor when Start is pressed.
+        early = threading.Timer(_IMPORT_SECONDS, importlib.import_module, ("hpsop_core.runs.replay",))
+        early.daemon = True
+        early.start()
 
     def _warm_up(self) -> None:
         try:
