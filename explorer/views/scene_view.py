@@ -256,7 +256,9 @@ class SceneView:
         before, self._told = self._told, float(camera.aspect)
         # one dock appears after the other, and a browser does not say so while its camera rests
         self._docked = self._docked or 0.0 < self._told < 1.1 * self._between_docks()
-        if self._docked and abs(self._told - before) > 0.02 * self._told and self._unmoved():
+        # a browser's first word is where its camera stood before it heard of ours
+        other = self._docked and abs(self._told - before) > 0.02 * self._told and self._unmoved()
+        if before == 0.0 or other:
             self._session.worker.latest("camera", self.place_camera)
 
     def place_camera(self) -> None:
