@@ -56,10 +56,11 @@ class ToolbarView:
             for name, word, hint in _SWITCHES
             if name != "beside" or options.ghost
         )
+        row = ""
         shown = self._session.selected
-        conditions = ""
-        if shown is not None and len(shown.evaluation.conditions) > 1:
-            conditions = '<span class="gap"></span><span class="soft">waves, pressure and turn at</span>' + "".join(
+        overlaid = options.waves or options.pressure or options.spin
+        if overlaid and shown is not None and len(shown.evaluation.conditions) > 1:
+            conditions = "".join(
                 chip(
                     "condition",
                     f"Fn {condition.froude_number:.3f}",
@@ -69,8 +70,7 @@ class ToolbarView:
                 )
                 for index, condition in enumerate(shown.evaluation.conditions)
             )
-        if not (options.waves or options.pressure or options.spin):
-            conditions = ""
+            row = f'<span class="soft">At</span>{chips(conditions)}'
         other = (
             chip("switch", "Dark", "dark", on=options.dark)
             + chip("screenshot", "Screenshot")
@@ -81,7 +81,7 @@ class ToolbarView:
                 "toolbar",
                 f'<div class="card"><div class="tools"><span class="soft">View</span>{chips(cameras)}'
                 f'<span class="soft">Show</span>{chips(switches)}'
-                f'<span class="soft">Page</span>{chips(other, conditions)}</div></div>',
+                f'{row}<span class="soft">Page</span>{chips(other)}</div></div>',
             )
         )
 
