@@ -12,7 +12,6 @@ from pathlib import Path
 
 import numpy as np
 
-from explorer.quantities import VARIABLES, Quantity, all_quantities
 from explorer.run_picture import (
     ACTIVE,
     FAILED,
@@ -29,6 +28,7 @@ from explorer.run_picture import (
 from hpsop_core.case import Case
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.quantities import VARIABLES, Quantity, all_quantities
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.events import RunEvent
 from hpsop_core.runs.lock import is_being_written

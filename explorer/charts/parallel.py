@@ -8,8 +8,8 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explorer.charts.plot import escape, symbol_svg
-from explorer.quantities import OBJECTIVES, VARIABLES, Quantity, all_quantities, number_text
 from explorer.run_picture import RunPicture
+from hpsop_core.quantities import OBJECTIVES, VARIABLES, Quantity, all_quantities, number_text
 
 _MOST_LINES = 350
 _RESULTS = ("block_coefficient", "total_resistance_1", "open_water_efficiency_1", "delivered_power_1")

@@ -7,7 +7,7 @@ import trimesh
 from numpy.typing import NDArray
 from PIL import Image
 
-from explorer.quantities import number_text
+from hpsop_core.quantities import number_text
 
 Stops = tuple[tuple[int, int, int], ...]
 # From low to high. The sea's middle is the undisturbed surface, troughs dark and crests light; pressure runs from

@@ -17,10 +17,10 @@ from explorer.charts.curves import (
 from explorer.charts.drivers import drivers_table
 from explorer.charts.parallel import parallel_chart
 from explorer.charts.plot import escape
-from explorer.quantities import VARIABLES, all_quantities
 from explorer.state import Session
 from explorer.views.charts_view import ChartTab, on_display
 from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.quantities import VARIABLES, all_quantities
 
 
 def _height(session: Session, share: float, least: float = 215.0, most: float = 330.0) -> float:

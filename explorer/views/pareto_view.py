@@ -19,12 +19,12 @@ from explorer.charts.pareto import (
     pick,
 )
 from explorer.charts.plot import Plot, legend
-from explorer.quantities import objective_title
 from explorer.run_picture import GenerationPicture
 from explorer.state import Session
 from explorer.views.chips import box, chip, chips
 from explorer.views.slot import Slot
 from explorer.views.tables import design_card
+from hpsop_core.quantities import objective_title
 
 _FRAME = (68.0, 42.0)  # px of the margins, both sides together
 _STEP_SECONDS = 0.25

@@ -5,11 +5,11 @@ from __future__ import annotations
 import viser
 
 from explorer.charts.plot import escape
-from explorer.quantities import number_text
 from explorer.run_picture import ACTIVE, FAILED, FINISHED, IDLE, PAUSED, RUNNING, STARTING, STOPPED, STOPPING
 from explorer.state import AppState
 from explorer.views.chips import box, chip, chips
 from explorer.views.slot import Slot
+from hpsop_core.quantities import number_text
 
 _WORDS = {
     IDLE: "Ready",

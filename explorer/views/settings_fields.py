@@ -70,7 +70,7 @@ CASE_FIELDS: tuple[tuple[str, tuple[tuple[str, str, str], ...]], ...] = (
             ("initial", "diameter", "D [m]"),
             ("initial", "blade_count", "Z"),
             ("initial", "pitch_ratio", "pitch ratio"),
-            ("initial", "displacement_ratio", "V ratio"),
+            ("initial", "displacement_ratio", "∇ / parent ∇"),
             ("initial", "expanded_area_ratio", "EAR"),
             ("initial", "buoyancy_centre_shift", "LCB shift / L"),
         ),

@@ -12,7 +12,6 @@ import viser
 
 from explorer.charts.plot import escape
 from explorer.draft import numbers_from_text
-from explorer.quantities import VARIABLES, Quantity, number_text
 from explorer.state import AppState
 from explorer.views.chips import box, chip, chips
 from explorer.views.settings_fields import CASE_FIELDS, OPEN_FOLDERS, SEARCH_FIELDS, SLIDER_RANGES, STEPS
@@ -20,6 +19,7 @@ from hpsop_core.case import SHIPPED_CASES, load_case
 from hpsop_core.case_fields import checked_value, rules
 from hpsop_core.design import VARIABLE_RULES
 from hpsop_core.errors import InputError
+from hpsop_core.quantities import VARIABLES, Quantity, number_text
 
 # A field is typed digit by digit; what cannot be taken is refused when the typing has rested so long.
 _TYPING_SECONDS = 1.5

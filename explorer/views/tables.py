@@ -5,7 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from explorer.charts.plot import escape, symbol_html
-from explorer.quantities import (
+from explorer.state import Shown
+from hpsop_core.quantities import (
     CONSTRAINTS,
     HULL,
     OBJECTIVES,
@@ -16,7 +17,6 @@ from explorer.quantities import (
     condition_quantities,
     violated,
 )
-from explorer.state import Shown
 
 _ROOM_FOR_NAMES = 4
 _PLAIN_CHANGE = {"Constraints (feasible ≤ 0)"}

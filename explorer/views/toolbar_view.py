@@ -10,7 +10,6 @@ from PIL import Image
 
 from explorer.bridge import PageEvent, overlay
 from explorer.charts.plot import escape
-from explorer.quantities import number_text
 from explorer.scene.camera import PRESETS, TITLES
 from explorer.state import Session, Shown
 from explorer.views.chips import chip, chips
@@ -18,6 +17,7 @@ from explorer.views.slot import Slot
 from explorer.views.tables import headline
 from hpsop_core.errors import HpsopError
 from hpsop_core.export.design_files import zip_design
+from hpsop_core.quantities import number_text
 
 _SWITCHES = (
     ("ghost", "Ghost", "the initial design beside the selected one; choose another in Compare"),

@@ -14,7 +14,6 @@ from explorer.charts.curves import Series, open_water_chart
 from explorer.charts.drivers import rank_correlation
 from explorer.charts.plot import Plot, smooth, symbol_html, symbol_svg, tick_texts, ticks
 from explorer.physics import Physics
-from explorer.quantities import change_text, number_text
 from explorer.scene.camera import PRESETS, preset
 from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, ramp
 from explorer.scene.transfer import transferred
@@ -25,6 +24,7 @@ from hpsop_core.case import Case, load_case
 from hpsop_core.evaluation import design_hull
 from hpsop_core.evaluation_result import Evaluation
 from hpsop_core.hydro.michell import wave_coefficients
+from hpsop_core.quantities import change_text, number_text
 
 Array = NDArray[np.float64]
 

@@ -275,6 +275,9 @@ def test_camera_presets_and_the_turning_propeller(page, session, explorer):
     wait_until(lambda: not np.allclose(frame.wxyz, before), 20, "a turn")
     press(page, "switch", "spin")
     wait_until(lambda: not session.options.spin, 20, "the standstill")
+    # the initial design is no ghost of itself
+    press(page, "choose", "compromise")
+    wait_until(lambda: session.selected.kind == "run", 20, "the compromise")
     press(page, "switch", "ghost")
     wait_until(lambda: client.scene.get_handle_by_name("/ghost") is not None, 60, "the ghost")
     press(page, "switch", "ghost")
