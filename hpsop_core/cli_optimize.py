@@ -270,6 +270,8 @@ def _summary_lines(run: RunReader) -> list[str]:
         f"generation {summary['generation']} of {summary['generations']} (population {summary['population']}, "
         f"seed {summary['seed']}), begun {summary['created']}",
     ]
+    if summary["state"] == "interrupted":
+        lines.append(f"to go on: the same 'hpsop optimize ... --run {summary['run']}' again, or Continue on the page")
     for level, numbers in summary["evaluations"].items():
         wall = summary["wall_seconds"].get(level, 0.0)
         lines.append(

@@ -77,7 +77,7 @@ class RunReader:
             values = _values(connection)
         state, reason = values["state"], values["reason"]
         if state in ("new", "running", "paused") and not is_being_written(self.path):
-            return "interrupted", "its process ended without finishing; start the same command again to go on"
+            return "interrupted", "its process ended before it was finished; it can go on from there"
         return state, reason
 
     def progress(self) -> tuple[int, int]:
