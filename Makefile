@@ -7,7 +7,7 @@ INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --co
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 
-.PHONY: explore test test-core lint soak benchmark pictures clean
+.PHONY: explore test test-core lint soak benchmark pictures chromium clean
 
 explore: $(VENV)/installed
 	$(BIN)/hpsop-explore $(ARGS)
@@ -28,7 +28,12 @@ soak: $(VENV)/installed-for-tests
 benchmark: $(VENV)/installed-for-tests
 	for script in benchmarks/bench_*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
-.PHONY: chromium
+# Every picture of the docs, anew.
+pictures: $(VENV)/installed-for-tests chromium
+	for what in hull propeller rankine blade_panel; do \
+		$(BIN)/python -m hpsop_core.export.$${what}_pictures --to docs/pictures || exit 1; done
+	$(BIN)/python -m explorer.screenshots --docs --to docs/pictures
+
 chromium:
 	@.ci/chromium
 
