@@ -1,0 +1,42 @@
+"""The shipped demonstration is a whole run of the recommended case, and today's code finds its numbers again."""
+
+from __future__ import annotations
+
+from importlib.resources import as_file
+
+import pytest
+
+from hpsop_core import evaluate, load_case, open_run
+from hpsop_core.assets import asset_path
+from hpsop_core.evaluation import Reference
+from hpsop_core.runs.reader import RunReader
+
+
+@pytest.fixture(scope="module")
+def run() -> RunReader:
+    with as_file(asset_path("demo", "dtc-p4119.hpsop")) as path:
+        return open_run(path)
+
+
+def test_it_is_the_shipped_case_run_to_its_end(run: RunReader) -> None:
+    case = load_case("dtc-p4119")
+    assert run.case == case
+    assert run.state()[0] == "finished" and not run.failures()
+    generations = run.generations()
+    assert len(generations) == case.optimization.generations
+    assert [g.level for g in generations].count(1) == case.optimization.level1_generations
+    # What is handed over with a margin stays feasible: four fifths of the population, the rest is fresh.
+    assert generations[case.optimization.level1_generations].feasible_share >= 0.75
+    assert len(run.front()) == case.optimization.population
+
+
+@pytest.mark.parametrize("design", ["compromise", "knee", "initial", 200])
+def test_its_designs_come_out_the_same_today(run: RunReader, design: str | int) -> None:
+    stored = run.design(design).evaluation
+    reference = run.reference(stored.level)
+    assert reference is not None
+    today = evaluate(run.case, stored.variables, stored.level, Reference.from_dict(reference))
+    # The same bits on the platform it was made on; another libm may round differently.
+    for name in ("f1", "f2"):
+        assert today.objectives[name] == pytest.approx(stored.objectives[name], rel=1e-9)
+    assert today.constraints == pytest.approx(stored.constraints, abs=1e-9)
