@@ -490,5 +490,6 @@ def _open_water_curve(curve: PropellerCurve) -> OpenWaterCurve:
     lower, upper = curve.range
     advance = np.arange(lower, upper + 0.5 * CURVE_STEP, CURVE_STEP)
     thrust, torque = curve.coefficients(advance)
-    efficiency = advance * thrust / (2.0 * math.pi * torque)
+    # Beyond zero thrust the quotient of two small numbers means nothing: no useful work is done there.
+    efficiency = np.where(thrust > 0.0, advance * thrust / (2.0 * math.pi * torque), 0.0)
     return OpenWaterCurve(*(tuple(float(value) for value in row) for row in (advance, thrust, torque, efficiency)))

@@ -128,7 +128,7 @@ class ConditionResult:
 
 @dataclass(frozen=True)
 class OpenWaterCurve:
-    """Open-water curves at full scale; four tuples of the same length."""
+    """Open-water curves at full scale; four tuples of the same length. The efficiency is 0 where there is no thrust."""
 
     advance_coefficient: tuple[float, ...]
     thrust_coefficient: tuple[float, ...]

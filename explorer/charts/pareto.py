@@ -13,6 +13,7 @@ from explorer.run_picture import GenerationPicture, RunPicture
 
 _FRONT_BONUS = 5.0
 _REACH = 18.0
+_COUNT_SPACE = 26.0
 _COINCIDENT = 2.5
 
 
@@ -173,11 +174,15 @@ def _count_coincident(plot: Plot, points: NDArray[np.float64]) -> None:
     """A small number beside marks that hide others: "×3" are three designs on one spot."""
     pixels = np.column_stack([plot.px(points[:, 0]), plot.py(points[:, 1])])
     waiting = list(range(len(points)))
+    last: NDArray[np.float64] | None = None
     while waiting:
         first = waiting[0]
         same = [index for index in waiting if float(np.hypot(*(pixels[index] - pixels[first]))) <= _COINCIDENT]
         waiting = [index for index in waiting if index not in same]
-        if len(same) > 1:
+        # where marks crowd, numbers would only cover one another
+        free = last is None or float(np.hypot(*(pixels[first] - last))) >= _COUNT_SPACE
+        if len(same) > 1 and free:
+            last = pixels[first]
             plot.text(points[first, 0], points[first, 1], f"×{len(same)}", "count", dx=6, dy=-5)
 
 

@@ -12,6 +12,7 @@ from scipy.stats import spearmanr
 
 from explorer.charts.curves import Series, open_water_chart
 from explorer.charts.drivers import rank_correlation
+from explorer.charts.pareto import _count_coincident
 from explorer.charts.plot import Plot, smooth, symbol_html, symbol_svg, tick_texts, ticks
 from explorer.physics import Physics
 from explorer.scene.camera import PRESETS, preset
@@ -118,6 +119,17 @@ def test_ticks_have_no_more_decimals_than_their_distance():
     # the last label ends within the picture
     svg = Plot(470.0, 200.0, (0.0, 3e5), (0.0, 1.0), "x", "y").svg("c", x_count=3)
     assert '<text x="469.0" text-anchor="end"' in svg
+
+
+def test_counts_of_coincident_marks_do_not_cover_one_another():
+    plot = Plot(470.0, 300.0, (0.0, 1.0), (0.0, 1.0), "x", "y")
+    crowd = [(0.2 + 0.015 * k, 0.5) for k in range(10) for _ in range(2)]
+    _count_coincident(plot, np.array([*crowd, (0.9, 0.9), (0.9, 0.9), (0.9, 0.9)]))
+    texts = re.findall(r'<text x="([^"]+)"[^>]*>×(\d)', plot.svg("c"))
+    places = [float(x) for x, _ in texts]
+    assert [count for _, count in texts][-1] == "3" and 3 <= len(texts) < 8
+    # 26 pixels hold "×10" with air
+    assert min(np.diff(places)) >= 26.0
 
 
 def test_numbers_and_changes_for_people():

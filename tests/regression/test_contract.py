@@ -74,6 +74,15 @@ def test_evaluate(capsys: pytest.CaptureFixture[str]) -> None:
     assert lengths.pop() > 10
 
 
+def test_efficiency_ends_with_the_thrust(capsys: pytest.CaptureFixture[str]) -> None:
+    words = ["evaluate", "dtc-p4119-paper", "--set", "blade_count=5", "pitch_ratio=0.95", "--json"]
+    curve = output(words, capsys)["open_water"]
+    thrust, efficiency = curve["thrust_coefficient"], curve["open_water_efficiency"]
+    assert thrust[-1] < 0.0 < thrust[-5]
+    # Past zero thrust, J KT/(2 pi KQ) is -0.2 and then 6.8.
+    assert all((eta > 0.0) == (kt > 0.0) and 0.0 <= eta < 1.0 for kt, eta in zip(thrust, efficiency, strict=True))
+
+
 def test_keys_of_a_later_version_are_left_alone(capsys: pytest.CaptureFixture[str]) -> None:
     document = output(["evaluate", "dtc-p4119-paper", "--json"], capsys)
     later = {**document, "seakeeping": {}, "hull": {**document["hull"], "metacentre": 1.0}}
