@@ -13,7 +13,6 @@ import argparse
 import contextlib
 import dataclasses
 import os
-import shutil
 import signal
 import statistics
 import subprocess
@@ -28,21 +27,13 @@ from typing import Any
 
 import viser
 
+from explorer.chromium import ARGUMENTS, chromium_program
 from hpsop_core.case import Case, load_case
 from hpsop_core.design import DesignVariables
 from hpsop_core.evaluation_result import Evaluation
 
-_ARGUMENTS = (
-    "--no-sandbox",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-    "--enable-precise-memory-info",
-)
+# The browser tells its memory only when asked to.
+_ARGUMENTS = (*ARGUMENTS, "--enable-precise-memory-info")
 _BURN_SECONDS = 0.004
 _WATCH = """
     window.watch = (test) => {
@@ -334,10 +325,8 @@ def main() -> None:
 
     from explorer.security import free_port
 
-    names = ("chromium", "chromium-browser", "google-chrome")
-    program = next((path for name in names if (path := shutil.which(name))), None)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=program, args=list(_ARGUMENTS))
+        browser = playwright.chromium.launch(executable_path=chromium_program(), args=list(_ARGUMENTS))
         if arguments.only != "stream":
             usable(browser)
         if arguments.only != "usable":

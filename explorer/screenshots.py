@@ -8,7 +8,6 @@ from __future__ import annotations
 
 import argparse
 import io
-import shutil
 import sqlite3
 import sys
 import tempfile
@@ -20,20 +19,11 @@ from typing import Any
 from PIL import Image
 
 from explorer.app import Explorer, demonstration
+from explorer.chromium import ARGUMENTS, chromium_program
 from explorer.run_picture import ACTIVE, FAILED, FINISHED, PAUSED
 from explorer.security import free_port
 from hpsop_core.case import load_case
 
-_ARGUMENTS = (
-    "--no-sandbox",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-)
 _HIDE = ".mantine-Notifications-root{display:none!important}"
 # A picture larger than this is saved with fewer shades: the repository carries them all.
 _LARGEST = 245_000
@@ -276,12 +266,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         sys.stderr.write("--docs shows a finished run: name one with --run\n")
         return 2
     shown = None if arguments.docs else chosen
-    names = ("chromium", "chromium-browser", "google-chrome")
-    program = next((path for name in names if (path := shutil.which(name))), None)
     with tempfile.TemporaryDirectory() as folder, sync_playwright() as playwright:
         explorer = Explorer(case, shown, shown is not None, port=free_port("127.0.0.1", 8700), folder=Path(folder))
         try:
-            browser = playwright.chromium.launch(executable_path=program, args=list(_ARGUMENTS))
+            browser = playwright.chromium.launch(executable_path=chromium_program(), args=list(ARGUMENTS))
             page = browser.new_page(viewport={"width": width, "height": height})
             page.set_default_timeout(120_000)
             page.goto(explorer.address)

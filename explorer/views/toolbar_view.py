@@ -117,7 +117,7 @@ class ToolbarView:
 
     def _ghost_words(self) -> str:
         ghost, _ = self._session.ghost()
-        return f"<br>ghost: {escape(ghost.label[0].lower() + ghost.label[1:])}" if ghost is not None else ""
+        return f"<br>ghost: {escape(_within_a_line(ghost))}" if ghost is not None else ""
 
     def _switch(self, event: PageEvent) -> None:
         options = self._session.options
@@ -146,7 +146,7 @@ class ToolbarView:
         case, evaluation = self._session.picture.case, shown.evaluation
         try:
             reference = self._session.app.services.physics.reference(case, evaluation.level)
-            archive = zip_design(case, evaluation, shown.label[0].lower() + shown.label[1:], reference)
+            archive = zip_design(case, evaluation, _within_a_line(shown), reference)
         except HpsopError as error:
             self._session.notify("No files", str(error), "red")
             return
@@ -168,6 +168,10 @@ class ToolbarView:
         Image.fromarray(image).save(picture, format="PNG")
         name = f"{_file_name(self._session.selected)}.png"
         self._client.send_file_download(name, picture.getvalue(), save_immediately=True)
+
+
+def _within_a_line(shown: Shown) -> str:
+    return shown.label[0].lower() + shown.label[1:]
 
 
 def _file_name(shown: Shown | None) -> str:

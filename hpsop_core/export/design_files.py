@@ -47,7 +47,7 @@ _MEANING = {
     "hydrostatics.csv": "hydrostatics and sectional areas",
     "resistance.csv": "resistance over Froude number",
     "open_water.csv": "KT, KQ and efficiency over J",
-    "design.json": "everything that is known of the design, as 'hpsop show --design --json' prints it",
+    "design.json": "everything that is known of the design, with the keys of 'hpsop evaluate --json'",
 }
 
 

@@ -5,7 +5,6 @@ python -m hpsop_core.export.propeller_pictures --to docs/pictures
 
 from __future__ import annotations
 
-import argparse
 import sys
 from collections.abc import Sequence
 from pathlib import Path
@@ -14,6 +13,7 @@ import numpy as np
 
 from hpsop_core.export.figures import pyplot
 from hpsop_core.export.hull_shading import ShadedPart, render
+from hpsop_core.export.picture_command import write_pictures
 from hpsop_core.geometry.hull import load_parent_hull
 from hpsop_core.geometry.hull_mesh import hull_view_parts
 from hpsop_core.geometry.propeller import Propeller, load_propeller, propeller_family
@@ -218,17 +218,7 @@ PICTURES = {
 
 def main(arguments: Sequence[str] | None = None) -> int:
     """Write every picture into a folder."""
-    parser = argparse.ArgumentParser(description="Write the propeller's pictures.")
-    parser.add_argument("--to", required=True, type=Path, help="folder for the PNG files")
-    folder: Path = parser.parse_args(arguments).to
-    try:
-        folder.mkdir(parents=True, exist_ok=True)
-        for name, draw in PICTURES.items():
-            draw(folder / name)
-    except OSError as error:
-        sys.stderr.write(f"{error}\n")
-        return 2
-    return 0
+    return write_pictures("Write the propeller's pictures.", PICTURES, arguments)
 
 
 if __name__ == "__main__":

@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import os
-import shutil
 import socket
 import time
 from collections.abc import Callable, Iterator
@@ -14,22 +13,13 @@ import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from explorer.app import Explorer
+from explorer.chromium import ARGUMENTS, chromium_program
 from explorer.security import free_port
 from hpsop_core.case import Case, load_case
 
 pytestmark = pytest.mark.browser
 # Software graphics on a busy machine: the first mesh alone may stall a page for many seconds.
 PATIENCE = 120_000
-_ARGUMENTS = [
-    "--no-sandbox",
-    "--disable-quic",
-    "--no-first-run",
-    "--disable-background-networking",
-    "--disable-component-update",
-    "--disable-sync",
-    "--use-angle=swiftshader",
-    "--enable-unsafe-swiftshader",
-]
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -50,10 +40,8 @@ def small_case(**settings: Any) -> Case:
 @pytest.fixture(scope="session")
 def chromium() -> Iterator[Browser]:
     """One browser process for all tests."""
-    names = ("chromium", "chromium-browser", "google-chrome")
-    found = next((path for name in names if (path := shutil.which(name))), None)
     with sync_playwright() as playwright:
-        browser = playwright.chromium.launch(executable_path=found, args=_ARGUMENTS)
+        browser = playwright.chromium.launch(executable_path=chromium_program(), args=list(ARGUMENTS))
         yield browser
         browser.close()
 
