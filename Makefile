@@ -30,9 +30,9 @@ benchmark: $(VENV)/installed-for-tests
 
 # Every picture of the docs, anew.
 pictures: $(VENV)/installed-for-tests chromium
-	for what in hull propeller rankine blade_panel; do \
-		$(BIN)/python -m hpsop_core.export.$${what}_pictures --to docs/pictures || exit 1; done
-	$(BIN)/python -m explorer.screenshots --docs --to docs/pictures
+	for what in hull propeller rankine blade_panels; do \
+		$(BIN)/python -m tools.pictures.$${what} --to docs/pictures || exit 1; done
+	$(BIN)/python -m tools.pictures.page --docs --to docs/pictures
 
 chromium:
 	@.ci/chromium

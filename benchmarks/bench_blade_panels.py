@@ -11,10 +11,11 @@ from collections.abc import Callable
 import numpy as np
 from scipy.linalg import lu_factor
 
-from hpsop_core.geometry.propeller import load_propeller, propeller_family
-from hpsop_core.hydro.blade_grid import blade_grid, helical_wake
-from hpsop_core.hydro.blade_hub_grid import hub_grid
-from hpsop_core.hydro.blade_panels import (
+from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
+from hpsop_core.hydro.blade_panels import hub_grid
+from hpsop_core.hydro.blade_panels.grid import blade_grid, helical_wake
+from hpsop_core.hydro.blade_panels.potential import factorise
+from hpsop_core.hydro.blade_panels.solver import (
     WAKE_PITCH_COUNT,
     BladePanelModel,
     BladePanelSettings,
@@ -22,7 +23,6 @@ from hpsop_core.hydro.blade_panels import (
     rotating_onset,
     solve,
 )
-from hpsop_core.hydro.blade_potential import factorise
 from hpsop_core.hydro.section_drag import SectionDrag
 
 

@@ -10,8 +10,8 @@ from collections.abc import Callable
 
 import numpy as np
 
-from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.geometry.hull_mesh import hull_mesh, hull_view_parts
+from hpsop_core.geometry.hull.hull import load_parent_hull
+from hpsop_core.geometry.hull.mesh import hull_mesh, hull_view_parts
 
 
 def best(action: Callable[[], object], repeats: int = 30) -> float:

@@ -14,10 +14,10 @@ from pathlib import Path
 
 import numpy as np
 
-from hpsop_core.case import load_case
-from hpsop_core.design import DesignVariables
-from hpsop_core.evaluation import evaluate, reference_for
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.case.case import load_case
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.evaluation.evaluate import evaluate, reference_for
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.optimization.nsga2 import Nsga2, Operators
 from hpsop_core.optimization.problem import Candidate, Outcome
 from hpsop_core.optimization.sampling import latin_hypercube

@@ -27,10 +27,10 @@ from typing import Any
 
 import viser
 
-from explorer.chromium import ARGUMENTS, chromium_program
-from hpsop_core.case import Case, load_case
-from hpsop_core.design import DesignVariables
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.case.case import Case, load_case
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.evaluation.result import Evaluation
+from tools.chromium import ARGUMENTS, chromium_program
 
 # The browser tells its memory only when asked to.
 _ARGUMENTS = (*ARGUMENTS, "--enable-precise-memory-info")
@@ -75,9 +75,9 @@ def streamed(
 
 def serve(folder: Path, port: int) -> None:
     """The page on the recommended case, whose Start streams."""
-    from explorer import run_keeper
     from explorer.app import Explorer
-    from hpsop_core.evaluation import Reference, evaluate, reference_for
+    from explorer.state.session import run_keeper
+    from hpsop_core.evaluation.evaluate import Reference, evaluate, reference_for
     from hpsop_core.runs.tasks import Physics
 
     case = load_case("dtc-p4119")
@@ -198,7 +198,7 @@ def opened(browser: Any, address: str) -> Iterator[Any]:
 
 def usable(browser: Any) -> None:
     """From the command to numbers on the screen, in an empty folder of runs."""
-    from explorer.security import free_port
+    from explorer.server.security import free_port
 
     found = []
     for _ in range(3):
@@ -323,7 +323,7 @@ def main() -> None:
         return
     from playwright.sync_api import sync_playwright
 
-    from explorer.security import free_port
+    from explorer.server.security import free_port
 
     with sync_playwright() as playwright:
         browser = playwright.chromium.launch(executable_path=chromium_program(), args=list(_ARGUMENTS))

@@ -11,13 +11,13 @@ from itertools import count as count_up
 
 import numpy as np
 
-from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.geometry.hull_mesh import hull_view_parts
-from hpsop_core.geometry.propeller import load_propeller, propeller_family
-from hpsop_core.geometry.propeller_clearance import propeller_clearance
-from hpsop_core.geometry.propeller_mesh import propeller_mesh, propeller_view_parts
-from hpsop_core.geometry.propeller_nurbs import blade_nurbs
-from hpsop_core.hydro import lifting_line
+from hpsop_core.geometry.clearance import propeller_clearance
+from hpsop_core.geometry.hull.hull import load_parent_hull
+from hpsop_core.geometry.hull.mesh import hull_view_parts
+from hpsop_core.geometry.propeller.mesh import propeller_mesh, propeller_view_parts
+from hpsop_core.geometry.propeller.nurbs import blade_nurbs
+from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
+from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
 
 

@@ -15,11 +15,11 @@ from typing import Any
 import numpy as np
 from threadpoolctl import threadpool_limits
 
-from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.geometry.panels import hull_panels
-from hpsop_core.hydro import rankine
-from hpsop_core.hydro.rankine_grid import surface_grid
-from hpsop_core.hydro.rankine_resistance import plane_resistance, wave_planes
+from hpsop_core.geometry.hull.hull import load_parent_hull
+from hpsop_core.geometry.hull.panels import hull_panels
+from hpsop_core.hydro.rankine import solver as rankine
+from hpsop_core.hydro.rankine.grid import surface_grid
+from hpsop_core.hydro.rankine.resistance import plane_resistance, wave_planes
 
 FROUDE_NUMBERS = (0.22, 0.27)
 

@@ -21,16 +21,16 @@ from typing import Any
 
 import viser
 
-from explorer.draft import Draft
 from explorer.layout import build_session, build_shared
-from explorer.library import RunLibrary, runs_folder
-from explorer.run_picture import RunPicture
-from explorer.security import free_port, secure_server
-from explorer.services import Services
-from explorer.state import AppState, Hub, Session
-from explorer.worker import LatestWorker
+from explorer.server.security import free_port, secure_server
+from explorer.server.worker import LatestWorker
+from explorer.services.services import Services
+from explorer.state.draft import Draft
+from explorer.state.library import RunLibrary, runs_folder
+from explorer.state.run_picture import RunPicture
+from explorer.state.session import AppState, Hub, Session
 from hpsop_core.assets import asset_path
-from hpsop_core.case import DEFAULT_CASE, Case, load_case
+from hpsop_core.case.case import DEFAULT_CASE, Case, load_case
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.runs.reader import open_run
 

@@ -9,16 +9,16 @@ import importlib
 from typing import TYPE_CHECKING, Any
 
 if TYPE_CHECKING:
-    from hpsop_core.case import load_case
-    from hpsop_core.evaluation import evaluate
+    from hpsop_core.case.case import load_case
+    from hpsop_core.evaluation.evaluate import evaluate
     from hpsop_core.runs import open_run, optimize
 
 __version__ = "0.1.0"
 __all__ = ["__version__", "evaluate", "load_case", "open_run", "optimize"]
 
 _HOMES = {
-    "load_case": "hpsop_core.case",
-    "evaluate": "hpsop_core.evaluation",
+    "load_case": "hpsop_core.case.case",
+    "evaluate": "hpsop_core.evaluation.evaluate",
     "optimize": "hpsop_core.runs",
     "open_run": "hpsop_core.runs",
 }

@@ -10,7 +10,7 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.evaluation.result import Evaluation
 
 OBJECTIVE_TITLES = {
     "resistance": "resistance, Σ w R/R₀",

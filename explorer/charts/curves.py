@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explorer.charts.plot import Plot, legend, padded, smooth
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.evaluation.result import Evaluation
 
 Array = NDArray[np.float64]
 _SUBSCRIPTS = "₁₂₃₄"

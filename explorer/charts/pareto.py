@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explorer.charts.plot import Limits, Plot, padded
-from explorer.run_picture import GenerationPicture, RunPicture
+from explorer.state.run_picture import GenerationPicture, RunPicture
 
 _FRONT_BONUS = 5.0
 _REACH = 18.0

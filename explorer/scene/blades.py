@@ -8,10 +8,10 @@ import numpy as np
 
 from explorer.scene.pressure import PressureMap
 from explorer.scene.transfer import transferred
-from hpsop_core.geometry.propeller import Propeller
-from hpsop_core.geometry.propeller_mesh import propeller_view_parts
-from hpsop_core.geometry.propeller_surface import rotate_blade, to_cartesian
-from hpsop_core.hydro.blade_panels import BladePanelSettings, blade_panel_model
+from hpsop_core.geometry.propeller.mesh import propeller_view_parts
+from hpsop_core.geometry.propeller.propeller import Propeller
+from hpsop_core.geometry.propeller.surface import rotate_blade, to_cartesian
+from hpsop_core.hydro.blade_panels.solver import BladePanelSettings, blade_panel_model
 
 # A little finer than the optimiser's grid: here the pressures are looked at, not the circulation.
 _SETTINGS = BladePanelSettings(chordwise_panels=40, radial_panels=16)

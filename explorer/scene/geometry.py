@@ -8,12 +8,12 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explorer.charts.curves import HullLines
-from hpsop_core.case import Case
-from hpsop_core.design import DesignVariables
-from hpsop_core.evaluation import design_hull, design_propeller
-from hpsop_core.geometry.hull_mesh import hull_view_parts
-from hpsop_core.geometry.propeller_clearance import propeller_plane_x
-from hpsop_core.geometry.propeller_mesh import propeller_view_parts
+from hpsop_core.case.case import Case
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.evaluation.evaluate import design_hull, design_propeller
+from hpsop_core.geometry.clearance import propeller_plane_x
+from hpsop_core.geometry.hull.mesh import hull_view_parts
+from hpsop_core.geometry.propeller.mesh import propeller_view_parts
 
 # propeller axes: x downstream, y to starboard; ship axes: x forward, y to port
 _TO_SHIP = np.array([-1.0, -1.0, 1.0])

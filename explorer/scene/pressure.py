@@ -8,10 +8,10 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explorer.scene.transfer import transferred
-from hpsop_core.geometry.hull import Hull
-from hpsop_core.geometry.hull_mesh import hull_view_parts
-from hpsop_core.geometry.panels import block_points
-from hpsop_core.hydro.rankine import RankineFields, solve
+from hpsop_core.geometry.hull.hull import Hull
+from hpsop_core.geometry.hull.mesh import hull_view_parts
+from hpsop_core.geometry.hull.panels import block_points
+from hpsop_core.hydro.rankine.solver import RankineFields, solve
 
 Array = NDArray[np.float64]
 

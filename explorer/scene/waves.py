@@ -17,8 +17,8 @@ import numpy as np
 from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
-from hpsop_core.geometry.hull import Hull
-from hpsop_core.hydro.rankine import solve
+from hpsop_core.geometry.hull.hull import Hull
+from hpsop_core.hydro.rankine.solver import solve
 
 Array = NDArray[np.float64]
 _COLUMNS, _ROWS = 264, 68

@@ -17,9 +17,9 @@ from explorer.charts.curves import (
 from explorer.charts.drivers import drivers_table
 from explorer.charts.parallel import parallel_chart
 from explorer.charts.plot import escape
-from explorer.state import Session
+from explorer.state.session import Session
 from explorer.views.charts_view import ChartTab, on_display
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.quantities import VARIABLES, all_quantities
 
 

@@ -7,9 +7,9 @@ from dataclasses import dataclass
 
 import viser
 
-from explorer.bridge import PageEvent
 from explorer.charts.curves import Series
-from explorer.state import Session, Shown
+from explorer.server.bridge import PageEvent
+from explorer.state.session import Session, Shown
 from explorer.views.chips import box, chip, chips
 from explorer.views.slot import Slot
 

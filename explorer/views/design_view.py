@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import viser
 
-from explorer.bridge import PageEvent
-from explorer.state import Session
+from explorer.server.bridge import PageEvent
+from explorer.state.session import Session
 from explorer.views.chips import box, chip, chips
 from explorer.views.slot import Slot
 from explorer.views.tables import comparison_table, headline, warnings_html

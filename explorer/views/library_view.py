@@ -7,7 +7,7 @@ import time
 import viser
 
 from explorer.charts.plot import escape
-from explorer.state import AppState
+from explorer.state.session import AppState
 from explorer.views.chips import box, chip, chips
 from explorer.views.slot import Slot
 

@@ -12,7 +12,7 @@ import viser
 from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, pressure_legend, sea_legend
 from explorer.scene.pressure import PressureMap
 from explorer.scene.waves import wave_surface
-from explorer.state import Session, Shown
+from explorer.state.session import Session, Shown
 from hpsop_core.errors import HpsopError
 
 # the hull's underwater part stays visible, faintly

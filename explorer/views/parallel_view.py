@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from explorer.bridge import PageEvent
 from explorer.charts.parallel import brushed
-from explorer.state import Session
+from explorer.server.bridge import PageEvent
+from explorer.state.session import Session
 
 
 class ParallelBrushes:

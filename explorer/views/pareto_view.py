@@ -8,7 +8,6 @@ from collections.abc import Mapping
 
 import viser
 
-from explorer.bridge import PageEvent, tooltip
 from explorer.charts.pareto import (
     ParetoMark,
     ParetoOptions,
@@ -19,8 +18,9 @@ from explorer.charts.pareto import (
     pick,
 )
 from explorer.charts.plot import Plot, legend
-from explorer.run_picture import GenerationPicture
-from explorer.state import Session
+from explorer.server.bridge import PageEvent, tooltip
+from explorer.state.run_picture import GenerationPicture
+from explorer.state.session import Session
 from explorer.views.chips import box, chip, chips
 from explorer.views.slot import Slot
 from explorer.views.tables import design_card

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Callable
 
-from explorer.bridge import PageEvent
-from explorer.state import Session
+from explorer.server.bridge import PageEvent
+from explorer.state.session import Session
 from hpsop_core.errors import HpsopError, InputError
 
 

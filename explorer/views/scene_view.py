@@ -10,11 +10,11 @@ from typing import Any
 import numpy as np
 import viser
 
-from explorer.bridge import PageEvent
 from explorer.scene.camera import PRESETS, preset
 from explorer.scene.geometry import SceneGeometry, without_deck
 from explorer.scene.surroundings import backdrop, calm_water
-from explorer.state import LEFT_DOCK, Session
+from explorer.server.bridge import PageEvent
+from explorer.state.session import LEFT_DOCK, Session
 from hpsop_core.errors import HpsopError
 
 UNDERWATER = (176, 84, 66)

@@ -11,13 +11,13 @@ from typing import Any
 import viser
 
 from explorer.charts.plot import escape
-from explorer.draft import numbers_from_text
-from explorer.state import AppState
+from explorer.state.draft import numbers_from_text
+from explorer.state.session import AppState
 from explorer.views.chips import box, chip, chips
 from explorer.views.settings_fields import CASE_FIELDS, OPEN_FOLDERS, SEARCH_FIELDS, SLIDER_RANGES, STEPS
-from hpsop_core.case import SHIPPED_CASES, load_case
-from hpsop_core.case_fields import checked_value, rules
-from hpsop_core.design import VARIABLE_RULES
+from hpsop_core.case.case import SHIPPED_CASES, load_case
+from hpsop_core.case.fields import checked_value, rules
+from hpsop_core.case.variables import VARIABLE_RULES
 from hpsop_core.errors import InputError
 from hpsop_core.quantities import VARIABLES, Quantity, number_text
 

@@ -8,10 +8,10 @@ from typing import Any
 import viser
 from PIL import Image
 
-from explorer.bridge import PageEvent, overlay
 from explorer.charts.plot import escape
 from explorer.scene.camera import PRESETS, TITLES
-from explorer.state import Session, Shown
+from explorer.server.bridge import PageEvent, overlay
+from explorer.state.session import Session, Shown
 from explorer.views.chips import chip, chips
 from explorer.views.slot import Slot
 from explorer.views.tables import headline

@@ -8,10 +8,10 @@ from typing import Any
 
 import viser
 
-from explorer.state import Session, Shown
+from explorer.state.session import Session, Shown
 from explorer.views.chips import box
 from explorer.views.tables import headline, warnings_html
-from hpsop_core.design import VARIABLE_RULES, DesignVariables
+from hpsop_core.case.variables import VARIABLE_RULES, DesignVariables
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.quantities import VARIABLES, number_text
 

@@ -12,13 +12,13 @@ from pathlib import Path
 from typing import Any
 
 from hpsop_core import __version__
-from hpsop_core.case import Case
+from hpsop_core.case.case import Case
 from hpsop_core.errors import InputError
-from hpsop_core.evaluation import Reference, design_hull, design_propeller, reference_for
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.evaluation.evaluate import Reference, design_hull, design_propeller, reference_for
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.export import tables
-from hpsop_core.geometry.hull import Hull
-from hpsop_core.geometry.propeller import Propeller
+from hpsop_core.geometry.hull.hull import Hull
+from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.runs.reader import RunReader
 
 FORMATS = ("stl", "glb", "3dm", "dxf", "csv", "json")

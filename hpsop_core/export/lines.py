@@ -11,12 +11,12 @@ import trimesh
 from ezdxf import units
 from ezdxf.filemanagement import new
 
-from hpsop_core.geometry.hull import Hull
-from hpsop_core.geometry.hull_mesh import hull_mesh
-from hpsop_core.geometry.propeller import Propeller
-from hpsop_core.geometry.propeller_clearance import propeller_placement
-from hpsop_core.geometry.propeller_nurbs import blade_outlines
-from hpsop_core.geometry.propeller_surface import rotate_blade
+from hpsop_core.geometry.clearance import propeller_placement
+from hpsop_core.geometry.hull.hull import Hull
+from hpsop_core.geometry.hull.mesh import hull_mesh
+from hpsop_core.geometry.propeller.nurbs import blade_outlines
+from hpsop_core.geometry.propeller.propeller import Propeller
+from hpsop_core.geometry.propeller.surface import rotate_blade
 from hpsop_core.typing_aliases import Array
 
 STATIONS = np.concatenate([np.arange(0.0, 1.0, 0.25), np.arange(1.0, 9.0, 0.5), np.arange(9.0, 10.01, 0.25)])

@@ -9,11 +9,11 @@ import numpy as np
 import trimesh
 from trimesh.exchange.stl import export_stl
 
-from hpsop_core.geometry.hull import Hull
-from hpsop_core.geometry.hull_mesh import hull_mesh, hull_view_parts
-from hpsop_core.geometry.propeller import Propeller
-from hpsop_core.geometry.propeller_clearance import propeller_placement
-from hpsop_core.geometry.propeller_mesh import propeller_mesh
+from hpsop_core.geometry.clearance import propeller_placement
+from hpsop_core.geometry.hull.hull import Hull
+from hpsop_core.geometry.hull.mesh import hull_mesh, hull_view_parts
+from hpsop_core.geometry.propeller.mesh import propeller_mesh
+from hpsop_core.geometry.propeller.propeller import Propeller
 
 # glTF's y is up: x forward stays, our z becomes its y, our y its -z.
 _TO_GLTF = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 
-from hpsop_core.geometry.hull import Hull
-from hpsop_core.geometry.offset_table import GIRTH_POINTS, section_half_breadths
+from hpsop_core.geometry.hull.hull import Hull
+from hpsop_core.geometry.hull.offset_table import GIRTH_POINTS, section_half_breadths
 from hpsop_core.typing_aliases import Array
 
 

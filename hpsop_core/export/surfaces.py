@@ -6,11 +6,11 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hpsop_core.geometry.hull import Hull
+from hpsop_core.geometry.clearance import propeller_placement
+from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.nurbs import NurbsSurface, clamped_knots
-from hpsop_core.geometry.propeller import Propeller
-from hpsop_core.geometry.propeller_clearance import propeller_placement
-from hpsop_core.geometry.propeller_nurbs import propeller_surfaces
+from hpsop_core.geometry.propeller.nurbs import propeller_surfaces
+from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.typing_aliases import Array
 
 _MIRROR = np.array([1.0, -1.0, 1.0])

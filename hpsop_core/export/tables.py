@@ -6,14 +6,14 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hpsop_core.case import Case
-from hpsop_core.evaluation import Reference
-from hpsop_core.evaluation_result import Evaluation
-from hpsop_core.export.curves import resistance_points
+from hpsop_core.case.case import Case
+from hpsop_core.evaluation.curves import resistance_points
+from hpsop_core.evaluation.evaluate import Reference
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.export.offsets import offsets_csv
-from hpsop_core.geometry.hull import Hull
-from hpsop_core.geometry.propeller import Propeller
-from hpsop_core.geometry.propeller_input import COLUMNS
+from hpsop_core.geometry.hull.hull import Hull
+from hpsop_core.geometry.propeller.input import COLUMNS
+from hpsop_core.geometry.propeller.propeller import Propeller
 
 _STATIONS = ((-0.02, 0.06, 33), (0.06, 0.2, 22), (0.2, 0.8, 25), (0.8, 0.94, 22), (0.94, 1.035, 39))
 _HEIGHTS = ((0.0, 0.1, 7), (0.1, 1.0, 28))

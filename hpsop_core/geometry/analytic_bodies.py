@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hpsop_core.geometry.panels import HullPanels, clustered, grid_quads
+from hpsop_core.geometry.hull.panels import HullPanels, clustered, grid_quads
 from hpsop_core.typing_aliases import Array
 
 WIGLEY_DRAFT_RATIO = 0.0625

@@ -6,7 +6,7 @@ from dataclasses import dataclass
 
 import numpy as np
 
-from hpsop_core.geometry.propeller import Propeller
+from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.typing_aliases import Array
 

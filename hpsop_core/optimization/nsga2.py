@@ -15,7 +15,7 @@ from pymoo.core.termination import NoTermination
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.operators.mutation.pm import PM
 
-from hpsop_core.design import DesignSpace
+from hpsop_core.case.variables import DesignSpace
 from hpsop_core.typing_aliases import Array, BoolArray
 
 

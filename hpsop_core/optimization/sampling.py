@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from hpsop_core.design import DesignSpace
+from hpsop_core.case.variables import DesignSpace
 from hpsop_core.typing_aliases import Array
 
 

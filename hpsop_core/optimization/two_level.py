@@ -17,8 +17,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
-from hpsop_core.case_sections import OptimizationSection
-from hpsop_core.design import DesignSpace, DesignVariables
+from hpsop_core.case.sections import OptimizationSection
+from hpsop_core.case.variables import DesignSpace, DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.optimization.decision import compromise, knee
 from hpsop_core.optimization.generation import Generation

@@ -10,7 +10,7 @@ from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass, field
 from typing import Any
 
-from hpsop_core.case import Case
+from hpsop_core.case.case import Case
 from hpsop_core.optimization.problem import Candidate
 from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.executor import Workers

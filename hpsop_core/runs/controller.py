@@ -11,10 +11,10 @@ from functools import partial
 from pathlib import Path
 from typing import TYPE_CHECKING
 
-from hpsop_core.case import Case
-from hpsop_core.design import DesignVariables
+from hpsop_core.case.case import Case
+from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import HpsopError, InputError
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.events import RunEvent, RunSnapshot
 from hpsop_core.runs.executor import LocalWorkers, checked_executor, make_workers

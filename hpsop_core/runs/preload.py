@@ -8,4 +8,4 @@ from hpsop_core.runs import tasks  # noqa: F401 - imported for its effect
 
 with contextlib.suppress(ImportError):
     # Without the solvers (a partial installation) the first evaluation says what is missing; here nobody would hear it.
-    from hpsop_core import evaluation  # noqa: F401
+    from hpsop_core.evaluation import evaluate as evaluation  # noqa: F401

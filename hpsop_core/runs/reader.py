@@ -10,10 +10,10 @@ from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
 
-from hpsop_core.case import Case, case_from_toml
-from hpsop_core.design import DesignVariables
+from hpsop_core.case.case import Case, case_from_toml
+from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.optimization.decision import compromise
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.runs.lock import is_being_written

@@ -8,9 +8,9 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from hpsop_core.design import VARIABLE_NAMES, DesignVariables
+from hpsop_core.case.variables import VARIABLE_NAMES, DesignVariables
 from hpsop_core.errors import InputError
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.optimization.generation import Generation
 
 

@@ -12,10 +12,10 @@ from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
-from hpsop_core.case import Case, case_from_toml
-from hpsop_core.design import DesignVariables
+from hpsop_core.case.case import Case, case_from_toml
+from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import HpsopError, InputError
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.problem import Candidate, Outcome
 from hpsop_core.runs.lock import WriterLock

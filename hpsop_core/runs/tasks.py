@@ -16,10 +16,10 @@ from typing import Any, TypeAlias
 
 import threadpoolctl
 
-from hpsop_core.case import Case
-from hpsop_core.design import DesignVariables
+from hpsop_core.case.case import Case
+from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import SolverFailure
-from hpsop_core.evaluation_result import Evaluation, failed_evaluation
+from hpsop_core.evaluation.result import Evaluation, failed_evaluation
 from hpsop_core.runs.records import json_text
 
 EvaluateFunction: TypeAlias = Callable[[Case, DesignVariables, int, Any], Evaluation]
@@ -51,7 +51,7 @@ class Physics:
 def hydrodynamics() -> Physics:
     """The real thing."""
     # Imported here: this module is also the workers' first import, and tests bring their own physics.
-    from hpsop_core.evaluation import Reference, evaluate, reference_for
+    from hpsop_core.evaluation.evaluate import Reference, evaluate, reference_for
 
     return Physics(evaluate, reference_for, Reference.from_dict)
 

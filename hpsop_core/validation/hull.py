@@ -10,10 +10,10 @@ from pathlib import Path
 import numpy as np
 
 from hpsop_core.assets import read_asset_text
-from hpsop_core.geometry.form import LEAST_STRETCH
-from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.geometry.hull_input import parent_hull_from_offsets
-from hpsop_core.geometry.hull_mesh import hull_mesh, underwater_mesh
+from hpsop_core.geometry.hull.form import LEAST_STRETCH
+from hpsop_core.geometry.hull.hull import load_parent_hull
+from hpsop_core.geometry.hull.input import parent_hull_from_offsets
+from hpsop_core.geometry.hull.mesh import hull_mesh, underwater_mesh
 from hpsop_core.validation.check import Check, absolute_check, relative_check
 
 GROUP = "hull geometry"
@@ -27,7 +27,7 @@ def _bound(quantity: str, computed: float, bound: float, source: str, below: boo
 
 def _recorded_deviations() -> Iterator[Check]:
     """Distances of the reference offsets from the patches, as the fitting script recorded them."""
-    source = "issue's limit; recorded by hpsop_core.geometry.hull_fit_dtc from the fine offsets"
+    source = "issue's limit; recorded by tools.fit_dtc from the fine offsets"
     for patch in json.loads(read_asset_text("hulls", "dtc.json"))["patches"]:
         deviation = patch["deviation"]
         yield _bound(f"DTC patch {patch['name']}, rms deviation [m]", deviation["rms_m"], 0.025, source)

@@ -8,10 +8,10 @@ from functools import lru_cache
 import numpy as np
 
 from hpsop_core.assets import read_asset_text
-from hpsop_core.geometry.propeller import load_propeller, propeller_family
-from hpsop_core.hydro import lifting_line
-from hpsop_core.hydro.helical_vortices import wrench_velocities
+from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
+from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
+from hpsop_core.hydro.singularities.vortices import wrench_velocities
 from hpsop_core.typing_aliases import Array
 from hpsop_core.validation.check import Check, absolute_check, relative_check
 

@@ -10,11 +10,11 @@ from scipy.integrate import quad
 
 from hpsop_core.assets import read_asset_text
 from hpsop_core.geometry.analytic_bodies import ellipsoid_quads, wigley_half_breadth, wigley_panels
-from hpsop_core.geometry.hull_fit_table import HalfBreadths, parent_from_table
-from hpsop_core.hydro.influence_hull import SourcePanels, flat_panels, panel_velocities
-from hpsop_core.hydro.rankine import double_body, solve, solve_panels, solver_axes
-from hpsop_core.hydro.rankine_resistance import pressure_force
-from hpsop_core.hydro.rankine_settings import RankineSettings
+from hpsop_core.geometry.hull.fit_table import HalfBreadths, parent_from_table
+from hpsop_core.hydro.rankine.resistance import pressure_force
+from hpsop_core.hydro.rankine.settings import RankineSettings
+from hpsop_core.hydro.rankine.solver import double_body, solve, solve_panels, solver_axes
+from hpsop_core.hydro.singularities.source_panels import SourcePanels, flat_panels, panel_velocities
 from hpsop_core.typing_aliases import Array
 from hpsop_core.validation import rankine_studies as studies
 from hpsop_core.validation.check import Check, range_check, relative_check

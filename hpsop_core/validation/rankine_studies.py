@@ -10,12 +10,12 @@ from scipy.stats import qmc, spearmanr
 
 from hpsop_core.errors import SolverFailure
 from hpsop_core.geometry.analytic_bodies import ellipsoid_quads, wigley_half_breadth
-from hpsop_core.geometry.hull import Hull, load_parent_hull
-from hpsop_core.geometry.panels import HullPanels
+from hpsop_core.geometry.hull.hull import Hull, load_parent_hull
+from hpsop_core.geometry.hull.panels import HullPanels
 from hpsop_core.hydro.friction import ittc57_coefficient
 from hpsop_core.hydro.michell import wave_coefficients
-from hpsop_core.hydro.rankine import RankineFields, solve
-from hpsop_core.hydro.rankine_settings import RankineSettings
+from hpsop_core.hydro.rankine.settings import RankineSettings
+from hpsop_core.hydro.rankine.solver import RankineFields, solve
 from hpsop_core.typing_aliases import Array
 
 FROUDE_NUMBERS, WEIGHTS = (0.22, 0.27), (0.65, 0.35)

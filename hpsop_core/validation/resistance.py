@@ -6,7 +6,7 @@ from collections.abc import Iterator
 
 import numpy as np
 
-from hpsop_core.geometry.hull import load_parent_hull
+from hpsop_core.geometry.hull.hull import load_parent_hull
 from hpsop_core.hydro.friction import ittc57_coefficient
 from hpsop_core.hydro.interaction import wake_fraction
 from hpsop_core.hydro.michell import wave_coefficients

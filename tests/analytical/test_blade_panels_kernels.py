@@ -5,9 +5,9 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hpsop_core.hydro.blade_grid import bilinear_points, grid_quadrilaterals
-from hpsop_core.hydro.blade_potential import SurfaceGradient, tangential
-from hpsop_core.hydro.influence_blade import FAR_DIAGONALS, body_influence, panel_set, strip_influence
+from hpsop_core.hydro.blade_panels.grid import bilinear_points, grid_quadrilaterals
+from hpsop_core.hydro.blade_panels.potential import SurfaceGradient, tangential
+from hpsop_core.hydro.singularities.dipole_panels import FAR_DIAGONALS, body_influence, panel_set, strip_influence
 
 ALWAYS_NEAR = 1.0e9
 

@@ -5,10 +5,10 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hpsop_core.geometry.propeller_sections import cosine_chord_fractions
-from hpsop_core.hydro.blade_grid import cosine_stations, grid_quadrilaterals, strip_surface
-from hpsop_core.hydro.blade_potential import KuttaProblem, factorise
-from hpsop_core.hydro.influence_blade import panel_set
+from hpsop_core.geometry.propeller.sections import cosine_chord_fractions
+from hpsop_core.hydro.blade_panels.grid import cosine_stations, grid_quadrilaterals, strip_surface
+from hpsop_core.hydro.blade_panels.potential import KuttaProblem, factorise
+from hpsop_core.hydro.singularities.dipole_panels import panel_set
 
 
 def elliptic_wing(aspect_ratio: float, chordwise: int, strips: int, incidence: float) -> tuple[float, np.ndarray]:

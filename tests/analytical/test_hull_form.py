@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hpsop_core.geometry.form import FormSolver, LongitudinalShift, ShiftFrame
+from hpsop_core.geometry.hull.form import FormSolver, LongitudinalShift, ShiftFrame
 
 FRAME = ShiftFrame(18.0, 168.0, 348.0, 355.0)
 

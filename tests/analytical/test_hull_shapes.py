@@ -8,9 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 
-from hpsop_core.geometry.hull import ParentHull
-from hpsop_core.geometry.hull_input import parent_hull_from_offsets
-from hpsop_core.geometry.hull_mesh import hull_mesh, underwater_mesh
+from hpsop_core.geometry.hull.hull import ParentHull
+from hpsop_core.geometry.hull.input import parent_hull_from_offsets
+from hpsop_core.geometry.hull.mesh import hull_mesh, underwater_mesh
 
 LENGTH = 60.0
 

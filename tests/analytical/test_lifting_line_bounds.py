@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hpsop_core.geometry.propeller import load_propeller, propeller_family
-from hpsop_core.hydro import lifting_line
+from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
+from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.validation.propeller_level1 import actuator_disc_efficiency, betz_efficiency
 

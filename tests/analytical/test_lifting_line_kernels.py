@@ -7,13 +7,13 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hpsop_core.geometry.propeller import load_propeller, propeller_family
-from hpsop_core.geometry.propeller_sections import ZERO_LIFT_ANGLE_PER_CAMBER, half_thickness
-from hpsop_core.geometry.propeller_surface import to_cartesian
-from hpsop_core.hydro.blade_thickness import thickness_normal_velocity
-from hpsop_core.hydro.chord_surface import chord_points
-from hpsop_core.hydro.helical_vortices import helix_tail_velocity, polyline_normal_velocity, wrench_velocities
-from hpsop_core.hydro.lifting_line import _CAMBER_SLOPES
+from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
+from hpsop_core.geometry.propeller.sections import ZERO_LIFT_ANGLE_PER_CAMBER, half_thickness
+from hpsop_core.geometry.propeller.surface import to_cartesian
+from hpsop_core.hydro.lifting_line.chord_surface import chord_points
+from hpsop_core.hydro.lifting_line.solver import _CAMBER_SLOPES
+from hpsop_core.hydro.lifting_line.thickness import thickness_normal_velocity
+from hpsop_core.hydro.singularities.vortices import helix_tail_velocity, polyline_normal_velocity, wrench_velocities
 from hpsop_core.typing_aliases import Array
 from hpsop_core.validation.propeller_level1 import elliptic_wing
 

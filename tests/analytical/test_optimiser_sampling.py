@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hpsop_core.case import load_case
+from hpsop_core.case.case import load_case
 from hpsop_core.optimization.sampling import derived_seed, latin_hypercube
 
 

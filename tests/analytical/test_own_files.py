@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from hpsop_core.assets import read_asset_text
-from hpsop_core.case import load_case
+from hpsop_core.case.case import load_case
 from hpsop_core.cli import main
-from hpsop_core.evaluation import evaluate
+from hpsop_core.evaluation.evaluate import evaluate
 
 
 def test_case_file_with_own_hull_and_propeller(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:

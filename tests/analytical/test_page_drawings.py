@@ -14,16 +14,16 @@ from explorer.charts.curves import Series, open_water_chart
 from explorer.charts.drivers import rank_correlation
 from explorer.charts.pareto import _count_coincident
 from explorer.charts.plot import Plot, smooth, symbol_html, symbol_svg, tick_texts, ticks
-from explorer.physics import Physics
 from explorer.scene.camera import PRESETS, preset
 from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, ramp
 from explorer.scene.transfer import transferred
 from explorer.scene.waves import kelvin_waves, kochin_functions
-from explorer.state import Shown
+from explorer.services.physics import Physics
+from explorer.state.session import Shown
 from explorer.views.tables import many_table
-from hpsop_core.case import Case, load_case
-from hpsop_core.evaluation import design_hull
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.case.case import Case, load_case
+from hpsop_core.evaluation.evaluate import design_hull
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.hydro.michell import wave_coefficients
 from hpsop_core.quantities import change_text, number_text
 

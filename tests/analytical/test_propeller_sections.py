@@ -5,15 +5,15 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hpsop_core.geometry.propeller import load_propeller, propeller_family
-from hpsop_core.geometry.propeller_sections import (
+from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
+from hpsop_core.geometry.propeller.radial_table import RadialTable
+from hpsop_core.geometry.propeller.sections import (
     IDEAL_ANGLE_PER_CAMBER,
     IDEAL_LIFT_PER_CAMBER,
     ZERO_LIFT_ANGLE_PER_CAMBER,
     half_thickness,
     mean_line,
 )
-from hpsop_core.geometry.radial_table import RadialTable
 
 
 def test_mean_line_is_the_published_a08_line() -> None:

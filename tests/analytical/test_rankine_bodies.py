@@ -7,9 +7,9 @@ import pytest
 from scipy.integrate import quad
 
 from hpsop_core.geometry.analytic_bodies import ellipsoid_quads, wigley_panels
-from hpsop_core.hydro.influence_hull import flat_panels
-from hpsop_core.hydro.rankine import double_body, solver_axes
-from hpsop_core.hydro.rankine_resistance import pressure_force
+from hpsop_core.hydro.rankine.resistance import pressure_force
+from hpsop_core.hydro.rankine.solver import double_body, solver_axes
+from hpsop_core.hydro.singularities.source_panels import flat_panels
 
 
 def ellipsoid_coefficients(a: float, b: float, c: float) -> tuple[float, float, float]:

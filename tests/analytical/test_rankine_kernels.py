@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
-from hpsop_core.hydro.influence_hull import SourcePanels, flat_panels, panel_velocities, point_velocities
-from hpsop_core.hydro.rankine_operator import convect, difference_weights
+from hpsop_core.hydro.rankine.operator import convect, difference_weights
+from hpsop_core.hydro.singularities.source_panels import SourcePanels, flat_panels, panel_velocities, point_velocities
 
 FAR_AWAY = 1e7
 

@@ -9,9 +9,9 @@ import pytest
 from scipy.integrate import quad
 
 from hpsop_core.geometry.analytic_bodies import wigley_half_breadth, wigley_panels
-from hpsop_core.geometry.hull import load_parent_hull
+from hpsop_core.geometry.hull.hull import load_parent_hull
 from hpsop_core.hydro import michell
-from hpsop_core.hydro.rankine import RankineFields, RankineSettings, solve, solve_panels
+from hpsop_core.hydro.rankine.solver import RankineFields, RankineSettings, solve, solve_panels
 from hpsop_core.validation.rankine_studies import deep_body_settings, submerged_sphere
 
 DEFAULT = RankineSettings()

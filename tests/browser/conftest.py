@@ -13,9 +13,9 @@ import pytest
 from playwright.sync_api import Browser, Page, sync_playwright
 
 from explorer.app import Explorer
-from explorer.chromium import ARGUMENTS, chromium_program
-from explorer.security import free_port
-from hpsop_core.case import Case, load_case
+from explorer.server.security import free_port
+from hpsop_core.case.case import Case, load_case
+from tools.chromium import ARGUMENTS, chromium_program
 
 pytestmark = pytest.mark.browser
 # Software graphics on a busy machine: the first mesh alone may stall a page for many seconds.

@@ -11,7 +11,7 @@ from pathlib import Path
 import pytest
 from conftest import PATIENCE, choose_tab, press, small_case, wait_until
 
-from explorer.security import free_port
+from explorer.server.security import free_port
 from hpsop_core.runs.reader import open_run
 
 BIN = Path(sys.executable).parent

@@ -12,7 +12,7 @@ from conftest import choose_tab, front_marks, press, session_of, small_case, wai
 from PIL import Image
 
 from explorer.app import Explorer
-from explorer.security import free_port
+from explorer.server.security import free_port
 from hpsop_core.errors import InputError
 from hpsop_core.runs.reader import open_run
 

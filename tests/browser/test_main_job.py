@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from conftest import front_marks, press, session_of, wait_until
 
-from hpsop_core.evaluation import design_hull, design_propeller
-from hpsop_core.geometry.hull_mesh import hull_view_parts
+from hpsop_core.evaluation.evaluate import design_hull, design_propeller
+from hpsop_core.geometry.hull.mesh import hull_view_parts
 
 
 def test_start_three_generations_click_a_front_point(explorer, open_page):

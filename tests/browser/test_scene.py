@@ -7,7 +7,7 @@ import pytest
 from conftest import session_of, small_case, wait_until
 
 from explorer.app import Explorer
-from explorer.security import free_port
+from explorer.server.security import free_port
 
 
 @pytest.fixture(scope="module")

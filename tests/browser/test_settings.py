@@ -13,8 +13,8 @@ import pytest
 from conftest import choose_tab, press, session_of, small_case, wait_until
 
 from explorer.app import Explorer
-from explorer.security import free_port
-from hpsop_core.case import load_case
+from explorer.server.security import free_port
+from hpsop_core.case.case import load_case
 
 
 @pytest.fixture(scope="module")

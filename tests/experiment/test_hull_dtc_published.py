@@ -10,8 +10,8 @@ import pytest
 
 from hpsop_core.assets import read_asset_text
 from hpsop_core.export.offsets import offsets_csv
-from hpsop_core.geometry.hull import Hull, load_parent_hull
-from hpsop_core.geometry.hull_input import parent_hull_from_offsets
+from hpsop_core.geometry.hull.hull import Hull, load_parent_hull
+from hpsop_core.geometry.hull.input import parent_hull_from_offsets
 from hpsop_core.hydro.michell import wave_coefficients
 
 

@@ -7,7 +7,7 @@ import math
 import pytest
 
 from hpsop_core import load_case
-from hpsop_core.export import paper
+from hpsop_core.reproduction import paper
 
 
 def test_bounds_and_conditions_are_those_of_the_shipped_case() -> None:
@@ -67,7 +67,7 @@ def test_objectives_of_table4_and_table3() -> None:
 
 def test_our_propeller_at_the_papers_advance_coefficients() -> None:
     """The initial propeller: P/D of the paper is a multiplier on P4119's pitch."""
-    from hpsop_core.propulsion import propeller_answer, propeller_variables
+    from hpsop_core.evaluation.propeller_answer import propeller_answer, propeller_variables
 
     case = load_case("dtc-p4119-paper")
     key = propeller_variables(case.propeller, case.initial.variables)

@@ -9,8 +9,8 @@ import pytest
 
 from hpsop_core.assets import read_asset_text
 from hpsop_core.geometry.analytic_bodies import wigley_panels
-from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.hydro.rankine import RankineResult, RankineSettings, solve, solve_panels
+from hpsop_core.geometry.hull.hull import load_parent_hull
+from hpsop_core.hydro.rankine.solver import RankineResult, RankineSettings, solve, solve_panels
 
 FORM_FACTOR = 0.094
 

@@ -8,10 +8,10 @@ import pytest
 
 from hpsop_core import load_case
 from hpsop_core.assets import read_asset_text
-from hpsop_core.evaluation import design_hull
-from hpsop_core.export.report_words import trust
+from hpsop_core.evaluation.evaluate import design_hull
+from hpsop_core.evaluation.hull_answer import solve_waves
 from hpsop_core.hydro.friction import ittc57_coefficient
-from hpsop_core.resistance import solve_waves
+from hpsop_core.report.words import trust
 
 FORM_FACTOR = 0.094
 

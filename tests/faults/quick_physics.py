@@ -9,10 +9,10 @@ import time
 from functools import partial
 from pathlib import Path
 
-from hpsop_core.case import Case
-from hpsop_core.design import VARIABLE_NAMES, DesignVariables
+from hpsop_core.case.case import Case
+from hpsop_core.case.variables import VARIABLE_NAMES, DesignVariables
 from hpsop_core.errors import SolverFailure
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.runs.tasks import Physics
 
 

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import Any
 
-from hpsop_core.case import Case, load_case
+from hpsop_core.case.case import Case, load_case
 from hpsop_core.runs.reader import open_run
 
 

@@ -11,8 +11,8 @@ import pytest
 import trimesh
 
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.geometry.hull_input import _check_between, parent_hull_from_offsets, parent_hull_from_stl
+from hpsop_core.geometry.hull.hull import load_parent_hull
+from hpsop_core.geometry.hull.input import _check_between, parent_hull_from_offsets, parent_hull_from_stl
 
 LENGTH, DRAFT = 100.0, 6.25
 

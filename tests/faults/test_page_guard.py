@@ -16,9 +16,9 @@ from websockets.exceptions import InvalidStatus
 from websockets.sync.client import ClientConnection, connect
 
 from explorer.app import Explorer
-from explorer.guard import check_update
-from explorer.security import allowed_origins, free_port
-from hpsop_core.case import load_case
+from explorer.server.guard import check_update
+from explorer.server.security import allowed_origins, free_port
+from hpsop_core.case.case import load_case
 from hpsop_core.errors import InputError
 
 
@@ -308,7 +308,7 @@ def test_origins_of_a_served_network_name_its_own_names_only() -> None:
 
 
 def test_a_run_of_another_name_is_never_a_path(tmp_path: Path) -> None:
-    from explorer.library import RunLibrary
+    from explorer.state.library import RunLibrary
 
     outside = tmp_path / "outside.hpsop"
     outside.write_bytes(b"")

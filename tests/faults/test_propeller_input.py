@@ -9,8 +9,8 @@ import pytest
 
 from hpsop_core.assets import read_asset_text
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.propeller import load_propeller, propeller_family, radial_table_from_csv
-from hpsop_core.geometry.radial_table import RadialTable
+from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family, radial_table_from_csv
+from hpsop_core.geometry.propeller.radial_table import RadialTable
 from hpsop_core.hydro.section_drag import SectionDrag
 
 HEADER = "r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c"

@@ -10,12 +10,12 @@ import pytest
 from hpsop_core import evaluate, load_case
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.geometry.analytic_bodies import wigley_panels
-from hpsop_core.geometry.form import LongitudinalShift
-from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.geometry.hydrostatics import volume_and_centre
-from hpsop_core.geometry.panels import HullPanels, grid_quads
-from hpsop_core.hydro.rankine import RankineSettings, solve, solve_panels, solver_axes
-from hpsop_core.hydro.rankine_checks import check_panels
+from hpsop_core.geometry.hull.form import LongitudinalShift
+from hpsop_core.geometry.hull.hull import load_parent_hull
+from hpsop_core.geometry.hull.hydrostatics import volume_and_centre
+from hpsop_core.geometry.hull.panels import HullPanels, grid_quads
+from hpsop_core.hydro.rankine.checks import check_panels
+from hpsop_core.hydro.rankine.solver import RankineSettings, solve, solve_panels, solver_axes
 
 COARSE = RankineSettings().refined(0.7)
 

@@ -9,7 +9,7 @@ import pytest
 
 from hpsop_core import load_case
 from hpsop_core.cli import main
-from hpsop_core.export import html_page, report
+from hpsop_core.report import html_page, report
 from hpsop_core.runs.controller import RunController
 
 

@@ -32,7 +32,7 @@ VARIABLES = [
 
 
 def command(*words: str) -> list[str]:
-    return [sys.executable, "-m", "hpsop_core.cli", *words]
+    return [sys.executable, "-m", "hpsop_core.cli.main", *words]
 
 
 def hpsop(*words: str, folder: Path) -> subprocess.CompletedProcess[str]:

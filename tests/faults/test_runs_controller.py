@@ -11,7 +11,7 @@ import quick_physics
 from quick_physics import evaluate, physics
 from run_files import content, small_case, wait_until
 
-from hpsop_core.case import load_case
+from hpsop_core.case.case import load_case
 from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController, front_designs, optimize, planned_case
 from hpsop_core.runs.events import RunEvent

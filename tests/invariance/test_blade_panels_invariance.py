@@ -8,14 +8,15 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hpsop_core.geometry.propeller import Propeller, RadialTable, load_propeller, propeller_family
-from hpsop_core.hydro import blade_panels, lifting_line
-from hpsop_core.hydro.blade_grid import blade_grid
-from hpsop_core.hydro.blade_hub_grid import HubSettings
-from hpsop_core.hydro.blade_panels import BladePanelSettings, forces_of, solve
-from hpsop_core.hydro.influence_blade import body_influence, panel_set
+from hpsop_core.evaluation.propeller_answer import ADVANCE_RANGE
+from hpsop_core.geometry.propeller.propeller import Propeller, RadialTable, load_propeller, propeller_family
+from hpsop_core.hydro.blade_panels import solver as blade_panels
+from hpsop_core.hydro.blade_panels.grid import blade_grid
+from hpsop_core.hydro.blade_panels.hub_grid import HubSettings
+from hpsop_core.hydro.blade_panels.solver import BladePanelSettings, forces_of, solve
+from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
-from hpsop_core.propulsion import ADVANCE_RANGE
+from hpsop_core.hydro.singularities.dipole_panels import body_influence, panel_set
 from hpsop_core.validation.propeller_level2 import fine_rigid_wake
 
 INVISCID = SectionDrag.inviscid()

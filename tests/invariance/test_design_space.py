@@ -7,8 +7,8 @@ from collections import Counter
 import numpy as np
 import pytest
 
-from hpsop_core.case import SHIPPED_CASES, case_from_toml, load_case
-from hpsop_core.design import VARIABLE_NAMES, DesignSpace, DesignVariables
+from hpsop_core.case.case import SHIPPED_CASES, case_from_toml, load_case
+from hpsop_core.case.variables import VARIABLE_NAMES, DesignSpace, DesignVariables
 from hpsop_core.errors import InputError
 
 CASE = load_case("dtc-p4119")

@@ -6,10 +6,11 @@ from typing import Any
 
 import pytest
 
-from hpsop_core import propulsion, resistance
-from hpsop_core.case import load_case
-from hpsop_core.design import DesignVariables
-from hpsop_core.evaluation import Reference, evaluate, reference_for
+from hpsop_core.case.case import load_case
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.evaluation import hull_answer as resistance
+from hpsop_core.evaluation import propeller_answer as propulsion
+from hpsop_core.evaluation.evaluate import Reference, evaluate, reference_for
 
 CASE = load_case("dtc-p4119")
 HULL = {"length_to_breadth": 7.3, "draft": 14.2, "displacement_ratio": 0.97}

@@ -8,9 +8,9 @@ import numpy as np
 import pytest
 
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.hull import Hull, load_parent_hull
-from hpsop_core.geometry.hull_input import parent_hull_from_stl
-from hpsop_core.geometry.hull_mesh import hull_mesh, hull_view_parts, underwater_mesh
+from hpsop_core.geometry.hull.hull import Hull, load_parent_hull
+from hpsop_core.geometry.hull.input import parent_hull_from_stl
+from hpsop_core.geometry.hull.mesh import hull_mesh, hull_view_parts, underwater_mesh
 
 
 def hulls() -> list[Hull]:

@@ -6,9 +6,9 @@ import numpy as np
 import pytest
 
 from hpsop_core.errors import InputError, SolverFailure
-from hpsop_core.geometry.propeller import RadialTable, load_propeller, propeller_family
-from hpsop_core.hydro import lifting_line
-from hpsop_core.hydro.lifting_line import LiftingLineSettings
+from hpsop_core.geometry.propeller.propeller import RadialTable, load_propeller, propeller_family
+from hpsop_core.hydro.lifting_line import solver as lifting_line
+from hpsop_core.hydro.lifting_line.solver import LiftingLineSettings
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.typing_aliases import Array
 

@@ -7,8 +7,9 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from hpsop_core.geometry.propeller import RadialTable, load_propeller, propeller_family
-from hpsop_core.hydro import blade_panels, lifting_line
+from hpsop_core.geometry.propeller.propeller import RadialTable, load_propeller, propeller_family
+from hpsop_core.hydro.blade_panels import solver as blade_panels
+from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
 
 

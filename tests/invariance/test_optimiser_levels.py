@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from hpsop_core.case import load_case
+from hpsop_core.case.case import load_case
 from hpsop_core.optimization.indicators import FrontArchive, hypervolume
 from hpsop_core.optimization.problem import Outcome
 from hpsop_core.runs.controller import optimize

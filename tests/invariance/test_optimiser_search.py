@@ -8,8 +8,8 @@ from collections.abc import Callable
 
 import pytest
 
-from hpsop_core.case import Case, load_case
-from hpsop_core.design import DesignVariables
+from hpsop_core.case.case import Case, load_case
+from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.optimization import two_level
 from hpsop_core.optimization.generation import Generation

@@ -12,9 +12,9 @@ from explorer.scene.blades import blade_pressure
 from explorer.scene.geometry import scene_geometry
 from explorer.scene.pressure import hull_pressure
 from explorer.scene.waves import kelvin_waves, panel_waves, wave_surface
-from hpsop_core.case import Case, load_case
-from hpsop_core.evaluation import design_hull, design_propeller
-from hpsop_core.geometry.hull import Hull
+from hpsop_core.case.case import Case, load_case
+from hpsop_core.evaluation.evaluate import design_hull, design_propeller
+from hpsop_core.geometry.hull.hull import Hull
 
 FROUDE = 0.27
 

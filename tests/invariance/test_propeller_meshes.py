@@ -9,19 +9,19 @@ import pytest
 import trimesh
 
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.geometry.hull_mesh import underwater_mesh
-from hpsop_core.geometry.propeller import load_propeller, propeller_family
-from hpsop_core.geometry.propeller_clearance import (
+from hpsop_core.geometry.clearance import (
     baseline_clearance,
     propeller_clearance,
     propeller_placement,
     swept_points,
 )
-from hpsop_core.geometry.propeller_hub import hub_of
-from hpsop_core.geometry.propeller_mesh import propeller_mesh, propeller_view_parts
-from hpsop_core.geometry.propeller_nurbs import blade_nurbs, hub_nurbs, propeller_surfaces
-from hpsop_core.geometry.propeller_surface import key_blade
+from hpsop_core.geometry.hull.hull import load_parent_hull
+from hpsop_core.geometry.hull.mesh import underwater_mesh
+from hpsop_core.geometry.propeller.hub import hub_of
+from hpsop_core.geometry.propeller.mesh import propeller_mesh, propeller_view_parts
+from hpsop_core.geometry.propeller.nurbs import blade_nurbs, hub_nurbs, propeller_surfaces
+from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
+from hpsop_core.geometry.propeller.surface import key_blade
 
 
 @pytest.mark.parametrize("blades", [2, 3, 5, 7])

@@ -7,10 +7,10 @@ import pytest
 from scipy.linalg import solve as dense_solve
 from scipy.stats import spearmanr
 
-from hpsop_core.geometry.hull import Hull, load_parent_hull
-from hpsop_core.geometry.panels import hull_panels
-from hpsop_core.hydro import rankine
-from hpsop_core.hydro.rankine_grid import surface_grid
+from hpsop_core.geometry.hull.hull import Hull, load_parent_hull
+from hpsop_core.geometry.hull.panels import hull_panels
+from hpsop_core.hydro.rankine import solver as rankine
+from hpsop_core.hydro.rankine.grid import surface_grid
 from hpsop_core.validation.rankine_studies import (
     form_designs,
     latin_hypercube,

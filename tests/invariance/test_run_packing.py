@@ -8,7 +8,7 @@ from typing import Any
 import pytest
 
 from hpsop_core import evaluate, load_case
-from hpsop_core.evaluation_result import Evaluation, failed_evaluation
+from hpsop_core.evaluation.result import Evaluation, failed_evaluation
 from hpsop_core.runs.packing import dictionary_of, pack, unpack
 from hpsop_core.runs.records import json_text, variables_text
 

@@ -11,13 +11,13 @@ import numpy as np
 import pytest
 from threadpoolctl import threadpool_info, threadpool_limits
 
-from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.hydro import rankine
+from hpsop_core.geometry.hull.hull import load_parent_hull
+from hpsop_core.hydro.rankine import solver as rankine
 from hpsop_core.one_thread import one_blas_thread
 
 RANKINE = """
-from hpsop_core.geometry.hull import load_parent_hull
-from hpsop_core.hydro.rankine import solve
+from hpsop_core.geometry.hull.hull import load_parent_hull
+from hpsop_core.hydro.rankine.solver import solve
 for dimensions in ((340.0, 50.0, 14.2), (361.0, 48.0, 14.4)):
     hull = load_parent_hull().transform(*dimensions)
     result = solve(hull, (0.22, 0.27))
@@ -28,7 +28,7 @@ for dimensions in ((340.0, 50.0, 14.2), (361.0, 48.0, 14.4)):
 EVERYTHING = """
 import dataclasses
 from hpsop_core import load_case, evaluate
-from hpsop_core.evaluation import resistance_curve
+from hpsop_core.evaluation.evaluate import resistance_curve
 case = load_case("dtc-p4119")
 for ratio in (0.97, 1.03):
     design = dataclasses.replace(case.initial.variables, displacement_ratio=ratio, blade_count=4)

@@ -12,14 +12,14 @@ import rhino3dm
 import trimesh
 
 from hpsop_core import load_case, optimize
-from hpsop_core.evaluation import design_hull, design_propeller
+from hpsop_core.evaluation.evaluate import design_hull, design_propeller
 from hpsop_core.export.design_files import export_design
-from hpsop_core.geometry.hull import Hull
-from hpsop_core.geometry.hull_input import parent_hull_from_offsets
-from hpsop_core.geometry.propeller import Propeller
-from hpsop_core.geometry.propeller_clearance import propeller_placement
-from hpsop_core.geometry.propeller_input import radial_table_from_csv
-from hpsop_core.geometry.propeller_nurbs import propeller_surfaces
+from hpsop_core.geometry.clearance import propeller_placement
+from hpsop_core.geometry.hull.hull import Hull
+from hpsop_core.geometry.hull.input import parent_hull_from_offsets
+from hpsop_core.geometry.propeller.input import radial_table_from_csv
+from hpsop_core.geometry.propeller.nurbs import propeller_surfaces
+from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.runs.reader import RunReader
 
 

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.hull import load_parent_hull
+from hpsop_core.geometry.hull.hull import load_parent_hull
 from hpsop_core.geometry.nurbs import NurbsSurface, clamped_knots, rising_spline_inverse
 
 

@@ -10,8 +10,8 @@ from pymoo.indicators.hv import HV
 from pymoo.operators.crossover.sbx import SBX
 from pymoo.optimize import minimize
 
-from hpsop_core.case import load_case
-from hpsop_core.design import DesignSpace
+from hpsop_core.case.case import load_case
+from hpsop_core.case.variables import DesignSpace
 from hpsop_core.optimization.indicators import hypervolume
 from hpsop_core.optimization.nsga2 import DecodedDuplicates, MixedMutation, Nsga2, Operators, rounded
 from hpsop_core.optimization.sampling import latin_hypercube

@@ -10,12 +10,12 @@ import pytest
 from html_reading import Page, check
 
 from hpsop_core import load_case, optimize
-from hpsop_core.case import Case
-from hpsop_core.export import charts
-from hpsop_core.export.curves import hull_lines, resistance_points, thrust_curves
-from hpsop_core.export.report import ReportData, report_html
-from hpsop_core.export.report_tables import failure_table, rank_correlation
+from hpsop_core.case.case import Case
+from hpsop_core.evaluation.curves import hull_lines, resistance_points, thrust_curves
 from hpsop_core.quantities import all_quantities, number_text
+from hpsop_core.report import charts
+from hpsop_core.report.report import ReportData, report_html
+from hpsop_core.report.tables import failure_table, rank_correlation
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.reader import RunReader, open_run
 from hpsop_core.runs.records import Failure
@@ -118,7 +118,7 @@ def test_assumptions_and_facts_are_the_cases_and_the_runs(page: Page, run: RunRe
 
 
 def test_pareto_and_convergence_show_the_run(run: RunReader) -> None:
-    from hpsop_core.export.report import _archive
+    from hpsop_core.report.report import _archive
 
     data = ReportData.of(run)
     archive, infeasible = _archive(run)

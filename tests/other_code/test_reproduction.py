@@ -10,9 +10,10 @@ from html_reading import Page, check
 
 from hpsop_core import load_case
 from hpsop_core.cli import main
-from hpsop_core.export import paper, reproduction_page
-from hpsop_core.export.reproduce import write_reproduction
-from hpsop_core.export.reproduction import Reproduction
+from hpsop_core.reproduction import page as reproduction_page
+from hpsop_core.reproduction import paper
+from hpsop_core.reproduction.comparison import Reproduction
+from hpsop_core.reproduction.reproduce import write_reproduction
 from hpsop_core.runs.reader import RunReader, open_run
 
 SECTIONS = ["verdict", "setup", "table3", "table4", "figure5", "figures67", "figure8", "figure9", "run"]

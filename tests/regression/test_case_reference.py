@@ -4,9 +4,9 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from hpsop_core.export.case_reference import case_reference
+from tools import case_reference
 
 
 def test_documentation_of_the_case_is_up_to_date() -> None:
     page = Path(__file__).resolve().parents[2] / "docs" / "case.md"
-    assert page.read_text(encoding="utf-8") == case_reference(), "run python -m hpsop_core.export.case_reference"
+    assert page.read_text(encoding="utf-8") == case_reference(), "run python -m tools.case_reference"

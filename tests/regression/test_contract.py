@@ -8,8 +8,8 @@ from typing import Any
 import pytest
 
 from hpsop_core import evaluate, load_case
-from hpsop_core.cli import build_parser, main
-from hpsop_core.evaluation_result import Evaluation
+from hpsop_core.cli.main import build_parser, main
+from hpsop_core.evaluation.result import Evaluation
 
 KEYS = {
     "": {"case", "level", "status", "reason", "variables", "hull", "propeller", "conditions", "objectives",

@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 from hpsop_core.export.offsets import offsets_csv
-from hpsop_core.geometry.hull import Hull, load_parent_hull, parent_hull_from_dict
-from hpsop_core.geometry.hull_fit import Section, StationMap, fit_patch, free_net
-from hpsop_core.geometry.hull_fit_dtc import DtcData, fitted_hull
+from hpsop_core.geometry.hull.fit import Section, StationMap, fit_patch, free_net
+from hpsop_core.geometry.hull.hull import Hull, load_parent_hull, parent_hull_from_dict
+from tools.fit_dtc import DtcData, fitted_hull
 
 EDGES = {  # the profile's parts as edges of patches: (patch, v)
     "run": ("counter", 0.0), "boss_bottom": ("skeg", 0.0), "boss_top": ("skeg", 1.0), "keel": ("main", 0.0),

@@ -1,0 +1,118 @@
+"""A viser server that only its own user can drive.
+
+viser 1.1.1 by default binds every interface, accepts any Origin (so any web page the user has open could press our
+buttons), may be framed by any page (so a page could lay itself over our buttons and steal the clicks), hands out public
+share tunnels to whoever asks, and silently takes the next port when one is busy. Here the port is chosen and known
+before the server starts, foreign Origins are refused by the WebSocket handshake, no other page may frame this one, and
+the share tunnel is off. What a browser that was let in may say is explorer/server/guard.py's matter.
+
+This leans on private facts of viser 1.1.1: it reads ``websockets.asyncio.server.serve`` at start and passes it
+``process_request``. The version is pinned and tests/faults/test_page_guard.py fails when these facts change.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import io
+import ipaddress
+import socket
+from collections.abc import Sequence
+from typing import Any
+
+import viser
+import websockets.asyncio.server as websocket_server
+from viser import _messages
+
+from hpsop_core.errors import InputError
+
+_PORTS_TO_TRY = 50
+
+
+def free_port(host: str, port: int) -> int:
+    """The first port from ``port`` upwards that can be bound on ``host``.
+
+    Raises InputError when the host is not one of this machine's or when no port near is free.
+    """
+    if not 1 <= port <= 65535:
+        raise InputError(f"--port {port}: must lie between 1 and 65535")
+    try:
+        family, _, _, _, address = socket.getaddrinfo(host, port, type=socket.SOCK_STREAM)[0]
+    except (OSError, UnicodeError) as error:
+        raise InputError(f"--host {host}: not an address of this machine ({error}); try 127.0.0.1") from None
+    for candidate in range(port, min(port + _PORTS_TO_TRY, 65536)):
+        with socket.socket(family, socket.SOCK_STREAM) as probe:
+            probe.setsockopt(socket.SOL_SOCKET, socket.SO_REUSEADDR, 1)
+            try:
+                probe.bind((address[0], candidate))
+                # Binding with SO_REUSEADDR succeeds on some systems while another process listens: listen() tells.
+                probe.listen(1)
+            except PermissionError:
+                continue
+            except OSError as error:
+                if error.errno in (99, 49, 10049):
+                    raise InputError(f"--host {host}: not an address of this machine; try 127.0.0.1") from None
+                continue
+            return candidate
+    raise InputError(f"--port {port}: no free port up to {port + _PORTS_TO_TRY - 1}; name another")
+
+
+def allowed_origins(host: str, port: int) -> list[str]:
+    """Origins a browser may come from: loopback, and the host's own names when it serves a network."""
+    names = {"localhost", "127.0.0.1"}
+    try:
+        wildcard = ipaddress.ip_address(host).is_unspecified
+    except ValueError:
+        wildcard = False
+    if wildcard:
+        own_name = socket.gethostname()
+        names.update({own_name, socket.getfqdn()})
+        with contextlib.suppress(OSError):
+            names.update(str(info[4][0]) for info in socket.getaddrinfo(own_name, None))
+    else:
+        names.add(host)
+    return sorted(f"http://{f'[{name}]' if ':' in name else name}:{port}" for name in names)
+
+
+def secure_server(host: str, port: int, label: str, origins: Sequence[str] | None = None) -> viser.ViserServer:
+    """Start viser on exactly this host and port, open to these Origins only, without share tunnels."""
+    accepted = list(allowed_origins(host, port) if origins is None else origins)
+    serve = websocket_server.serve
+
+    def guarded_serve(*arguments: Any, **settings: Any) -> Any:
+        settings["origins"] = accepted
+        settings["process_request"] = _unframed(settings.get("process_request"))
+        return serve(*arguments, **settings)
+
+    websocket_server.serve = guarded_serve  # type: ignore[assignment]
+    try:
+        # viser prints a banner of its own; the address is ours to print, once.
+        with contextlib.redirect_stdout(io.StringIO()):
+            server = viser.ViserServer(host=host, port=port, label=label, verbose=False)
+    finally:
+        websocket_server.serve = serve
+    if server.get_port() != port:
+        server.stop()
+        raise InputError(f"--port {port}: taken by another program a moment ago; start again")
+    server.request_share_url = _refuse_share  # type: ignore[method-assign]
+    for kind in (_messages.ShareUrlRequest, _messages.ShareUrlDisconnect):
+        server._websock_server.unregister_handler(kind)
+    return server
+
+
+def _unframed(answer: Any) -> Any:
+    """The same HTTP answers, with the headers that forbid other pages to frame them."""
+    if answer is None:
+        return None
+
+    def framed_by_nobody(connection: Any, request: Any) -> Any:
+        response = answer(connection, request)
+        if response is not None:
+            response.headers["Content-Security-Policy"] = "frame-ancestors 'none'"
+            response.headers["X-Content-Type-Options"] = "nosniff"
+        return response
+
+    return framed_by_nobody
+
+
+def _refuse_share(*_args: Any, **_kwargs: Any) -> None:
+    """Nobody gets a public tunnel to this machine."""

@@ -1,0 +1,149 @@
+"""The case while it is being set up: a preset and what was changed of it, checked as a whole."""
+
+from __future__ import annotations
+
+import math
+from collections.abc import Mapping, Sequence
+from typing import Any
+
+from hpsop_core.case.case import SECTIONS, SHIPPED_CASES, Case, case_from_toml, load_case
+from hpsop_core.case.fields import checked_value, rules
+from hpsop_core.errors import InputError
+
+
+class Draft:
+    """A case with changes that may, for a moment, not fit together.
+
+    Attributes:
+        base: the preset.
+        changes: {section: {field: value}}; the section "bounds" holds (lower, upper) by variable.
+        held: why what stands in a field at this moment cannot be taken, by (section, field); then there is no case.
+    """
+
+    def __init__(self, base: Case) -> None:
+        self.base = base
+        self.changes: dict[str, dict[str, Any]] = {}
+        self.held: dict[tuple[str, str], str] = {}
+
+    def set(self, section: str, name: str, value: Any) -> None:
+        """Change one field; the base's own value takes the change back."""
+        self.held.pop((section, name), None)
+        if value == self.base_value(section, name):
+            self.reset(section, name)
+        else:
+            self.changes.setdefault(section, {})[name] = value
+
+    def hold(self, section: str, name: str, why: str) -> None:
+        """A field shows something that cannot be taken (somebody may still be typing)."""
+        self.held[(section, name)] = why
+
+    def release(self, section: str, name: str) -> None:
+        """The field shows again what the draft holds."""
+        self.held.pop((section, name), None)
+
+    def reset(self, section: str, name: str) -> None:
+        """Take a change back."""
+        self.held.pop((section, name), None)
+        fields = self.changes.get(section, {})
+        fields.pop(name, None)
+        if not fields:
+            self.changes.pop(section, None)
+
+    def reset_all(self) -> None:
+        """Back to the preset."""
+        self.changes = {}
+        self.held = {}
+
+    def begin(self, base: Case) -> None:
+        """Set up from this case: a shipped preset and its changes where the case descends from one."""
+        self.base = base
+        self.reset_all()
+        if base.name not in SHIPPED_CASES:
+            return
+        preset = load_case(base.name)
+        if (preset.title, preset.description) != (base.title, base.description):
+            return
+        self.base = preset
+        for section in SECTIONS:
+            for name in rules(SECTIONS[section]):
+                self.set(section, name, getattr(getattr(base, section), name))
+        for name, pair in base.bounds.as_dict().items():
+            self.set("bounds", name, pair)
+
+    def base_value(self, section: str, name: str) -> Any:
+        """What the preset says."""
+        if section == "bounds":
+            return self.base.bounds.as_dict()[name]
+        return getattr(getattr(self.base, section), name)
+
+    def value(self, section: str, name: str) -> Any:
+        """What stands now."""
+        return self.changes.get(section, {}).get(name, self.base_value(section, name))
+
+    def changed(self, section: str, name: str) -> bool:
+        """Whether a field differs from the preset."""
+        return name in self.changes.get(section, {})
+
+    def count(self) -> int:
+        """How many fields differ from the preset."""
+        return sum(len(fields) for fields in self.changes.values())
+
+    def case(self) -> Case:
+        """The whole case.
+
+        Raises:
+            InputError: the changes do not make a case; the text says which field and what to do.
+        """
+        for why in list(self.held.values()):
+            raise InputError(why)
+        case = self.base
+        for section, fields in self.changes.items():
+            if section == "bounds":
+                case = case.with_bounds(fields)
+            else:
+                case = case.replaced(section, **fields)
+        return case
+
+    # ---- over a restart of the server --------------------------------------------------------------------------------
+    def saved(self) -> dict[str, Any]:
+        """The draft as JSON."""
+        return {"base": self.base.to_toml(), "changes": self.changes}
+
+    def restore(self, saved: Mapping[str, Any]) -> None:
+        """Come back to what ``saved`` described; what no longer fits is left at the preset's own value."""
+        try:
+            stored = case_from_toml(str(saved["base"]), "page.json")
+            changes = {section: dict(fields) for section, fields in dict(saved["changes"]).items()}
+        except (InputError, KeyError, TypeError, ValueError):
+            return
+        base = self.base = stored
+        self.reset_all()
+        known = base.bounds.as_dict()
+        for section, fields in changes.items():
+            for name, value in fields.items():
+                try:
+                    if section == "bounds":
+                        low, high = value
+                        base.with_bounds({name: (low, high)})
+                        taken: Any = (type(known[name][0])(low), type(known[name][1])(high))
+                    else:
+                        taken = checked_value(value, rules(SECTIONS[section])[name], f"{section}: {name}")
+                except (InputError, KeyError, TypeError, ValueError):
+                    continue
+                self.set(section, name, taken)
+
+
+def numbers_from_text(text: str, where: str) -> tuple[float, ...]:
+    """Numbers from "0.22, 0.27".
+
+    Raises:
+        InputError: a part is no number.
+    """
+    parts: Sequence[str] = [part for part in text.replace(";", ",").replace(" ", ",").split(",") if part]
+    try:
+        found = tuple(float(part) for part in parts)
+        if not all(math.isfinite(value) for value in found):
+            raise ValueError
+        return found
+    except ValueError:
+        raise InputError(f"{where}: '{text}' is not a list of numbers; write for example 0.22, 0.27") from None

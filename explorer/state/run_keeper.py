@@ -1,0 +1,363 @@
+"""The run on display: driven by this program, or read from a file that may be written by another one.
+
+It turns what the core tells (a controller's events, a file that grows) into pictures (explorer/state/run_picture.py). A
+picture is made on the shared worker, at most a few times a second, from what is new in the file.
+"""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from pathlib import Path
+
+import numpy as np
+
+from explorer.state.run_picture import (
+    ACTIVE,
+    FAILED,
+    FINISHED,
+    IDLE,
+    PAUSED,
+    RUNNING,
+    STARTING,
+    STOPPED,
+    STOPPING,
+    GenerationPicture,
+    RunPicture,
+)
+from hpsop_core.case.case import Case
+from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.quantities import VARIABLES, Quantity, all_quantities
+from hpsop_core.runs.controller import RunController
+from hpsop_core.runs.events import RunEvent
+from hpsop_core.runs.lock import is_being_written
+from hpsop_core.runs.reader import RunReader, open_run
+
+_STATES = {
+    "new": STARTING,
+    "running": RUNNING,
+    "paused": PAUSED,
+    "stopped": STOPPED,
+    "finished": FINISHED,
+    "failed": FAILED,
+    "interrupted": STOPPED,
+}
+_POLL_SECONDS = 0.7
+
+
+class RunKeeper:
+    """One run file, its controller if this program drives it, and the arrays read so far.
+
+    Args:
+        path: the file.
+        case, workers: given for a new run.
+        read_only: never drive it (the shipped demonstration).
+        on_news: called (from any thread) when ``picture`` would tell something new.
+    """
+
+    def __init__(
+        self,
+        path: Path,
+        on_news: Callable[[], None],
+        case: Case | None = None,
+        workers: int | None = None,
+        read_only: bool = False,
+    ) -> None:
+        self.path = path
+        self._on_news = on_news
+        self._workers = workers
+        self._read_only = read_only
+        self._controller: RunController | None = None
+        self._reader: RunReader | None = None
+        self._stop_asked = False
+        self._begun = False
+        self._error = ""
+        self._event: RunEvent | None = None
+        self._closed = threading.Event()
+        self._guard = threading.RLock()
+        self._known: set[int] = set()
+        self._ids = np.zeros(0, dtype=np.int64)
+        self._rows = np.zeros((0, 7))
+        self._table = np.zeros((0, 0))
+        self._quantities: tuple[Quantity, ...] = ()
+        self._picture: RunPicture | None = None
+        self._started_case = case
+        if case is None:
+            self._reader = open_run(path)
+        else:
+            self._controller = RunController(path, case, workers=workers)
+            self._controller.subscribe(self._on_event)
+        self._watcher = threading.Thread(target=self._watch, name="run-watch", daemon=True)
+        self._watcher.start()
+
+    # ---- control ---------------------------------------------------------------------------------------------------
+    @property
+    def case(self) -> Case:
+        """What it runs."""
+        if self._reader is not None:
+            return self._reader.case
+        if self._started_case is None:
+            raise InputError(f"{self.path}: holds no case")
+        return self._started_case
+
+    @property
+    def driven(self) -> bool:
+        """Whether this program drives it now."""
+        return self._controller is not None and self._controller.running
+
+    @property
+    def holds_file(self) -> bool:
+        """Whether this program keeps others from writing the file."""
+        return self._controller is not None
+
+    def start(self) -> None:
+        """Start or go on.
+
+        Raises:
+            InputError: somebody else writes the file, or it is the read-only demonstration.
+        """
+        with self._guard:
+            controller = self._open_controller()
+            self._stop_asked = False
+            self._error = ""
+            controller.start()
+            self._begun = True
+        self._on_news()
+
+    def pause(self) -> None:
+        """Start no more evaluations."""
+        if self._controller is not None:
+            self._controller.pause()
+            self._on_news()
+
+    def resume(self) -> None:
+        """Go on after a pause."""
+        if self._controller is not None:
+            self._controller.resume()
+            self._on_news()
+
+    def stop(self) -> None:
+        """End it after the evaluations under way."""
+        if self._controller is not None:
+            self._stop_asked = True
+            self._controller.stop()
+            self._on_news()
+
+    def extend(self, generations: int) -> None:
+        """More generations; a run that had ended starts again, a paused one stays paused.
+
+        Raises:
+            InputError: as ``start``.
+        """
+        with self._guard:
+            controller = self._open_controller()
+            controller.extend(generations)
+            if controller.running:
+                self._on_news()
+                return
+        self.start()
+
+    def add_by_hand(self, evaluation: Evaluation) -> int:
+        """Keep a hand-made design in the file.
+
+        Raises:
+            HpsopError: it cannot be written.
+        """
+        with self._guard:
+            controller = self._open_controller()
+            number = controller.add_design(evaluation)
+            if not controller.running:
+                controller.close()
+                self._controller = None
+        self._on_news()
+        return number
+
+    @property
+    def writable(self) -> bool:
+        """Whether hand-made designs and continuation are possible."""
+        return not self._read_only and (self._controller is not None or not is_being_written(self.path))
+
+    def part_of_generation(self) -> float:
+        """How much of the generation under way is done, 0 to 1."""
+        event = self._event
+        if event is None or event.snapshot.population < 1 or not self.driven:
+            return 0.0
+        return min(1.0, event.snapshot.done / event.snapshot.population)
+
+    def close(self) -> None:
+        """Stop driving and leave no process behind; the file keeps everything."""
+        self._closed.set()
+        controller = self._controller
+        if controller is not None:
+            controller.close()
+
+    # ---- news ------------------------------------------------------------------------------------------------------
+    def _on_event(self, event: RunEvent) -> None:
+        self._event = event
+        self._on_news()
+
+    def _watch(self) -> None:
+        last: tuple[object, ...] = ()
+        while not self._closed.wait(_POLL_SECONDS):
+            try:
+                self._release()
+                reader = self._ensure_reader()
+                if reader is None:
+                    continue
+                now = (*reader.progress(), *reader.state())
+            except HpsopError:
+                continue
+            if now != last:
+                last = now
+                self._on_news()
+
+    def _release(self) -> None:
+        """Give the file back once the run has ended, so that other programs may write it."""
+        with self._guard:
+            controller = self._controller
+            if controller is None or controller.running or not self._begun:
+                return
+            if controller.error is not None:
+                self._error = str(controller.error)
+            controller.close()
+            self._controller = None
+            self._begun = False
+            self._event = None
+        self._on_news()
+
+    def _open_controller(self) -> RunController:
+        if self._read_only:
+            raise InputError("the demonstration run is read-only; press Start for a run of your own")
+        if self._controller is None:
+            self._controller = RunController(self.path, workers=self._workers)
+            self._controller.subscribe(self._on_event)
+        return self._controller
+
+    def _ensure_reader(self) -> RunReader | None:
+        with self._guard:
+            if self._reader is None and self.path.is_file() and self.path.stat().st_size > 0:
+                try:
+                    self._reader = open_run(self.path)
+                except HpsopError:
+                    return None
+            return self._reader
+
+    # ---- pictures --------------------------------------------------------------------------------------------------
+    def evaluation(self, design_id: int) -> Evaluation | None:
+        """A design's numbers."""
+        reader = self._ensure_reader()
+        if reader is None:
+            return None
+        try:
+            return reader.designs([design_id])[0].evaluation
+        except HpsopError:
+            return None
+
+    def picture(self) -> RunPicture:
+        """The run as it is now."""
+        with self._guard:
+            return self._make_picture()
+
+    def _make_picture(self) -> RunPicture:
+        reader = self._ensure_reader()
+        case = self.case
+        if not self._quantities:
+            self._quantities = (*VARIABLES, *all_quantities(case.conditions.froude_numbers))
+        status, message = self._status(reader)
+        if reader is None:
+            return RunPicture(self.path.name, case, status, message, self.driven)
+        generations = tuple(
+            GenerationPicture(item.number, item.level, item.members, item.front, item.hypervolume)
+            for item in reader.generations()
+        )
+        self._read_new(reader)
+        newest = reader.generation()
+        snapshot = self._event.snapshot if self._event is not None else None
+        total = snapshot.generations if snapshot is not None and snapshot.generations else reader.generations_asked()
+        if total != case.optimization.generations:
+            case = case.replaced("optimization", generations=total)
+        elapsed = sum(record.elapsed for record in reader.generation_records())
+        self._picture = RunPicture(
+            name=self.path.name,
+            case=case,
+            status=status,
+            message=message,
+            live=self.driven,
+            ids=self._ids,
+            level=self._rows[:, 0].astype(np.int64),
+            generation=self._rows[:, 1].astype(np.int64),
+            objectives=self._rows[:, 2:4],
+            feasible=self._rows[:, 4] > 0.5,
+            failed=self._rows[:, 5] > 0.5,
+            by_hand=self._rows[:, 6] > 0.5,
+            table=self._table,
+            columns=tuple(quantity.key for quantity in self._quantities),
+            generations=generations,
+            compromise=newest.compromise if newest is not None else None,
+            knee=newest.knee if newest is not None else None,
+            seconds_left=snapshot.seconds_left if snapshot is not None else None,
+            elapsed=elapsed,
+        )
+        return self._picture
+
+    def _read_new(self, reader: RunReader) -> None:
+        points = [*reader.archive(after=self._complete_until(reader)), *reader.archive(by_hand=True)]
+        fresh = [point for point in points if point.id not in self._known]
+        if not fresh:
+            return
+        rows, table = [], []
+        # one connection for all of them: opening one costs more than reading a design
+        records = reader.designs([point.id for point in fresh])
+        for point, record in zip(fresh, records, strict=True):
+            f1, f2 = point.objectives if point.objectives is not None else (np.nan, np.nan)
+            rows.append(
+                [
+                    point.level,
+                    point.generation,
+                    f1,
+                    f2,
+                    point.feasible,
+                    point.objectives is None,
+                    point.origin == "hand",
+                ]
+            )
+            evaluation = record.evaluation
+            table.append(
+                [
+                    np.nan if (value := quantity.value(evaluation)) is None else float(value)
+                    for quantity in self._quantities
+                ]
+            )
+            self._known.add(point.id)
+        # Fresh arrays each time: a picture that a view still draws from never changes under it.
+        ids = np.concatenate([self._ids, np.array([point.id for point in fresh], dtype=np.int64)])
+        order = np.argsort(ids, kind="stable")
+        self._ids = ids[order]
+        self._rows = np.concatenate([self._rows, np.array(rows, dtype=float)])[order]
+        self._table = np.concatenate([self._table.reshape(-1, len(self._quantities)), np.array(table)])[order]
+
+    def _complete_until(self, reader: RunReader) -> int:
+        """Ids up to here have all been read: those of finished generations that were pictured before."""
+        if self._picture is None or not self._picture.generations:
+            return 0
+        finished = self._picture.generations[-1].number
+        asked = reader.generation(finished)
+        return max(asked.asked) if asked is not None and asked.asked else 0
+
+    def _status(self, reader: RunReader | None) -> tuple[str, str]:
+        controller = self._controller
+        if controller is not None and controller.running:
+            snapshot = controller.snapshot()
+            status = _STATES.get(snapshot.state, RUNNING)
+            if self._stop_asked and status in ACTIVE:
+                return STOPPING, "waiting for the evaluations under way"
+            if status == STARTING:
+                return STARTING, "starting the workers and evaluating the initial design"
+            return status, snapshot.reason
+        if self._error:
+            return FAILED, self._error
+        if reader is None:
+            return IDLE, ""
+        state, reason = reader.state()
+        return _STATES.get(state, state), reason

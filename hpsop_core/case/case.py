@@ -1,0 +1,203 @@
+"""A case: everything that the user states, read from TOML, checked, frozen, and written back without loss."""
+
+from __future__ import annotations
+
+import dataclasses
+import tomllib
+from collections.abc import Mapping
+from dataclasses import dataclass, field
+from pathlib import Path
+from typing import Any
+
+from hpsop_core.assets import asset_path
+from hpsop_core.case.fields import checked_value, read_section, rules, toml_value, unknown_name, write_section
+from hpsop_core.case.sections import (
+    ConditionsSection,
+    ConstantsSection,
+    ConstraintsSection,
+    HullSection,
+    InitialSection,
+    ObjectivesSection,
+    OptimizationSection,
+    PropellerSection,
+)
+from hpsop_core.case.variables import VARIABLE_NAMES, DesignSpace
+from hpsop_core.errors import InputError
+
+SHIPPED_CASES = ("dtc-p4119", "dtc-p4119-paper", "dtc-p4119-power")
+DEFAULT_CASE = SHIPPED_CASES[0]
+
+SECTIONS: dict[str, type[Any]] = {
+    "hull": HullSection,
+    "propeller": PropellerSection,
+    "initial": InitialSection,
+    "conditions": ConditionsSection,
+    "objectives": ObjectivesSection,
+    "constraints": ConstraintsSection,
+    "constants": ConstantsSection,
+    "optimization": OptimizationSection,
+}
+_TEXTS = ("name", "title", "description")
+
+
+@dataclass(frozen=True)
+class Case:
+    """What is to be optimised, from which parents, under which conditions and with which constants.
+
+    Attributes:
+        name: one word; stands in every result.
+        title, description: for people; the description says what the case assumes.
+        hull, propeller, initial, conditions, objectives, constraints, constants, optimization: see case_sections.
+        bounds: the design space.
+    """
+
+    name: str
+    title: str
+    description: str
+    hull: HullSection
+    propeller: PropellerSection
+    initial: InitialSection
+    bounds: DesignSpace
+    conditions: ConditionsSection
+    objectives: ObjectivesSection = field(default_factory=ObjectivesSection)
+    constraints: ConstraintsSection = field(default_factory=ConstraintsSection)
+    constants: ConstantsSection = field(default_factory=ConstantsSection)
+    optimization: OptimizationSection = field(default_factory=OptimizationSection)
+
+    def __post_init__(self) -> None:
+        constants = self.constants
+        if constants.wave_calibration == "stated" and len(constants.stated_wave_coefficients) != len(
+            self.conditions.froude_numbers
+        ):
+            raise InputError(
+                f"constants: wave_calibration = stated needs {len(self.conditions.froude_numbers)} "
+                f"stated_wave_coefficients, one a condition; {len(constants.stated_wave_coefficients)} given"
+            )
+        limits = self.constraints
+        if limits.diameter_to_draft_lower > limits.diameter_to_draft_upper:
+            raise InputError("constraints: diameter_to_draft_lower exceeds diameter_to_draft_upper; swap them")
+        _ = self.initial.variables  # refuses proportions that no design may have
+
+    def to_toml(self) -> str:
+        """The case as TOML, every field stated; ``case_from_toml`` gives the same case again."""
+        head = "".join(f"{name} = {toml_value(getattr(self, name))}\n" for name in _TEXTS)
+        parts = [head]
+        for name in SECTIONS:
+            parts.append(write_section(name, getattr(self, name)))
+            if name == "initial":
+                pairs = "".join(f"{key} = {toml_value(pair)}\n" for key, pair in self.bounds.as_dict().items())
+                parts.append(f"[bounds]\n{pairs}")
+        return "\n".join(parts)
+
+    def replaced(self, section: str, **changes: object) -> Case:
+        """The same case with fields of one section changed, each checked against its rule.
+
+        Raises:
+            InputError: an unknown field or a refused value.
+        """
+        known = rules(SECTIONS[section])
+        checked = {}
+        for name, value in changes.items():
+            if name not in known:
+                raise unknown_name(name, list(known), section)
+            checked[name] = checked_value(value, known[name], f"{section}: {name}")
+        return dataclasses.replace(self, **{section: dataclasses.replace(getattr(self, section), **checked)})
+
+    def with_bounds(self, bounds: Mapping[str, tuple[float, float]]) -> Case:
+        """The same case with some bounds changed; the others stay.
+
+        Raises:
+            InputError: as ``DesignSpace.from_bounds``.
+        """
+        return dataclasses.replace(self, bounds=DesignSpace.from_bounds({**self.bounds.as_dict(), **bounds}))
+
+
+def load_case(name_or_path: str | Path) -> Case:
+    """A shipped case by its name, or a case from a TOML file.
+
+    Raises:
+        InputError: no such case or file, no TOML, an unknown field or a refused value; one line that says where.
+    """
+    name = str(name_or_path)
+    if name in SHIPPED_CASES:
+        return case_from_toml(asset_path("cases", f"{name}.toml").read_text(encoding="utf-8"), f"{name}.toml")
+    path = Path(name_or_path)
+    if not path.is_file():
+        raise InputError(f"{name}: no such case; give a TOML file or one of {', '.join(SHIPPED_CASES)}")
+    try:
+        content = path.read_text(encoding="utf-8")
+    except (OSError, UnicodeDecodeError) as error:
+        raise InputError(f"{name}: cannot be read as a UTF-8 text ({error}); give a TOML file") from error
+    return case_from_toml(content, name, path.resolve().parent)
+
+
+def case_from_toml(content: str, where: str, folder: Path | None = None) -> Case:
+    """A case from TOML text.
+
+    Args:
+        content: the text.
+        where: the name of the file, for errors.
+        folder: files that the case names are relative to this folder.
+
+    Raises:
+        InputError: as ``load_case``.
+    """
+    try:
+        tables = tomllib.loads(content)
+    except tomllib.TOMLDecodeError as error:
+        raise InputError(f"{where}: not valid TOML: {error}; mend that line") from error
+    known = [*_TEXTS, "bounds", *SECTIONS]
+    values: dict[str, Any] = {}
+    for key, value in tables.items():
+        if key not in known:
+            raise unknown_name(key, known, where)
+        if key in _TEXTS:
+            if not isinstance(value, str):
+                raise InputError(f"{where}: {key} must be a text; put it in quotes")
+            values[key] = value
+        elif not isinstance(value, dict):
+            raise InputError(f"{where}: {key} must be a table; write [{key}]")
+    for required in ("initial", "bounds"):
+        if required not in tables:
+            raise InputError(f"{where}: the table [{required}] is missing; copy it from a shipped case")
+    stem = Path(where).stem
+    return _assembled(tables, values, where, stem, folder)
+
+
+def _assembled(
+    tables: Mapping[str, Any], texts: Mapping[str, Any], where: str, stem: str, folder: Path | None
+) -> Case:
+    try:
+        sections = {
+            name: read_section(section, tables.get(name, {}), name) for name, section in SECTIONS.items()
+        }
+        if folder is not None:
+            sections["hull"] = _absolute(sections["hull"], "hull", ("offsets", "stl"), folder)
+            sections["propeller"] = _absolute(sections["propeller"], "propeller", ("geometry",), folder)
+        bounds = dict(tables["bounds"])
+        # The three variables that the paper does not have are fixed at the initial design's unless stated.
+        initial = sections["initial"]
+        for name in VARIABLE_NAMES[-3:]:
+            bounds.setdefault(name, (getattr(initial, name),) * 2)
+        return Case(
+            name=texts.get("name", stem),
+            title=texts.get("title", texts.get("name", stem)),
+            description=texts.get("description", ""),
+            bounds=DesignSpace.from_bounds(bounds),
+            **sections,
+        )
+    except InputError as error:
+        raise InputError(f"{where}: {error}") from error
+
+
+def _absolute(section: Any, where: str, names: tuple[str, ...], folder: Path) -> Any:
+    """The section with absolute paths to the files that it names.
+
+    Raises:
+        InputError: there is no such file.
+    """
+    changes = {name: str((folder / getattr(section, name)).resolve()) for name in names if getattr(section, name)}
+    for name, path in changes.items():
+        if not Path(path).is_file():
+            raise InputError(f"{where}: {name}: there is no file {path}; give a path from the case file's folder")
+    return dataclasses.replace(section, **changes)

@@ -1,0 +1,316 @@
+"""The commands ``evaluate``, ``resistance``, ``open-water`` and ``validate``."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+import sys
+from pathlib import Path
+from typing import Any
+
+from hpsop_core.case.fields import FieldRule
+from hpsop_core.case.sections import HullSection
+from hpsop_core.cli.arguments import (
+    add_json,
+    add_level,
+    add_set,
+    case_and_design,
+    checked_option,
+    describe_variables,
+    number_list,
+    print_json,
+    print_table,
+)
+from hpsop_core.errors import InputError
+from hpsop_core.evaluation.result import Evaluation
+
+FROUDE_RULE = FieldRule("number", "Froude number", "", 0.1, 0.5)
+ADVANCE_RULE = FieldRule("number", "advance coefficient", "", 0.05, 2.0)
+# ITTC recommended properties at 15 C: density in kg/m3, kinematic viscosity in m2/s.
+WATERS = {"salt": (1025.0, 1.188e-6), "fresh": (999.1, 1.1386e-6)}
+# P4119's open-water test: diameter in m, rotation rate in 1/s, viscosity in m2/s.
+MODEL_TEST = (0.3048, 10.0, 1e-6)
+
+
+def add_parsers(commands: Any) -> None:
+    """Add the four commands to the parser."""
+    evaluate = commands.add_parser("evaluate", help="everything about one design of a case")
+    evaluate.add_argument("case", metavar="CASE", help="a shipped case's name or a TOML file")
+    add_level(evaluate)
+    add_set(evaluate)
+    add_json(evaluate)
+    evaluate.set_defaults(handler=_evaluate)
+
+    resistance = commands.add_parser("resistance", help="resistance of a hull over Froude numbers")
+    resistance.add_argument("case", metavar="CASE", nargs="?", help="a shipped case's name or a TOML file")
+    resistance.add_argument("--offsets", metavar="FILE.csv", help="station_x_m,waterline_z_m,half_breadth_m, in metres")
+    resistance.add_argument("--length", metavar="L", help="Lpp in m, with --offsets")
+    resistance.add_argument("--draft", metavar="D", help="waterline above z = 0 in m, with --offsets")
+    resistance.add_argument("--froude", metavar="F[,F...]", required=True, help="Froude numbers V/sqrt(g Lpp)")
+    resistance.add_argument("--form-factor", metavar="K", help="k on ITTC-57; the case's, or 0 with --offsets")
+    resistance.add_argument("--water", metavar="salt|fresh|RHO,NU", help="the case's, or salt with --offsets")
+    add_level(resistance)
+    add_set(resistance)
+    add_json(resistance)
+    resistance.set_defaults(handler=_resistance)
+
+    open_water = commands.add_parser("open-water", help="KT, KQ and efficiency of a propeller, at model scale")
+    open_water.add_argument("case", metavar="CASE", nargs="?", help="a shipped case's name or a TOML file")
+    open_water.add_argument("--geometry", metavar="FILE.csv", help="r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c")
+    open_water.add_argument("--blades", metavar="Z", help="number of blades, with --geometry")
+    open_water.add_argument("--advance", metavar="J[,J...]", required=True, help="advance coefficients")
+    open_water.add_argument("--diameter", metavar="D", help=f"in m, {MODEL_TEST[0]} unless given")
+    open_water.add_argument("--rotation-rate", metavar="N", help=f"in 1/s, {MODEL_TEST[1]} unless given")
+    open_water.add_argument("--viscosity", metavar="NU", help=f"in m2/s, {MODEL_TEST[2]} unless given")
+    open_water.add_argument(
+        "--inviscid", action="store_true", help="without section drag and without the viscous factor on the lift"
+    )
+    add_level(open_water)
+    add_set(open_water)
+    add_json(open_water)
+    open_water.set_defaults(handler=_open_water)
+
+    validate = commands.add_parser("validate", help="every validation case beside its published reference")
+    add_json(validate)
+    validate.set_defaults(handler=_validate)
+
+
+def _evaluate(arguments: argparse.Namespace) -> int:
+    from hpsop_core.evaluation.evaluate import evaluate
+    from hpsop_core.evaluation.hull_answer import parent_hull
+
+    case, variables = case_and_design(arguments.case, arguments.changes)
+    result = evaluate(case, variables, arguments.level)
+    report = parent_hull(case.hull).fit_report
+    if report is not None:
+        print(report, file=sys.stderr)
+    if arguments.json:
+        print_json(result.as_dict())
+    else:
+        print_evaluation(result)
+    return 0 if result.ok else 1
+
+
+def print_evaluation(result: Evaluation) -> None:
+    print(f"{result.case}, level {result.level}: {result.status}{' - ' + result.reason if result.reason else ''}")
+    print("\n".join(describe_variables(result.variables)))
+    if result.hull is None or not result.conditions:
+        return
+    hull = result.hull
+    print(
+        f"hull: Lpp {hull.length:.2f} m, B {hull.breadth:.2f} m, d {hull.draft:.2f} m, "
+        f"CB {hull.block_coefficient:.4f}, volume {hull.displaced_volume:,.0f} m3, S {hull.wetted_surface:,.0f} m2, "
+        f"LCB {hull.longitudinal_centre_of_buoyancy:.2f} m from AP"
+    )
+    if result.propeller is not None:
+        own = result.propeller
+        print(
+            f"propeller: D {own.diameter:.3f} m, Z {own.blade_count}, P/D {own.pitch_diameter_ratio_07R:.4f} at 0.7 R, "
+            f"EAR {own.expanded_area_ratio:.3f}, D/d {own.diameter / hull.draft:.3f}, "
+            f"tip clearance to the hull {own.tip_clearance:.2f} m"
+        )
+    if hull.booked_volume is not None:
+        print(f"booked (affine form): CB {hull.booked_block_coefficient:.4f}, volume {hull.booked_volume:,.0f} m3")
+    header = ["Fn", "V m/s", "Rf MN", "Rw MN", "Rt MN", "w", "t", "J", "n rpm", "KT", "10KQ", "eta0", "PD MW", "EAR"]
+    rows = [
+        [
+            f"{c.froude_number:.4f}", f"{c.speed:.3f}", f"{c.friction_resistance / 1e6:.3f}",
+            f"{c.wave_resistance / 1e6:.3f}", f"{c.total_resistance / 1e6:.3f}", f"{c.wake_fraction:.4f}",
+            f"{c.thrust_deduction:.4f}", f"{c.advance_coefficient:.4f}", f"{c.rotation_rate_rpm:.2f}",
+            f"{c.thrust_coefficient:.4f}", f"{10 * c.torque_coefficient:.4f}", f"{c.open_water_efficiency:.4f}",
+            f"{c.delivered_power / 1e6:.2f}", f"{c.required_expanded_area_ratio:.3f}",
+        ]
+        for c in result.conditions
+    ]  # fmt: skip
+    print_table(header, rows)
+    for c in result.conditions:
+        if c.blade_cavitation_margin is not None:
+            print(
+                f"blades at Fn {c.froude_number:.4f}: least Cp + sigma {c.blade_cavitation_margin:+.3f} at "
+                f"{c.blade_cavitation_radius_ratio:.2f} R (from hub to 0.9 R); "
+                f"{100.0 * (c.blade_cavitating_share or 0.0):.1f} % of the back below vapour pressure"
+            )
+    print("objectives: " + ", ".join(f"{name} {value:.5f}" for name, value in result.objectives.items() if value))
+    limits = ", ".join(
+        f"{name} {'not applied' if value is None else format(value, '+.4f')}"
+        for name, value in result.constraints.items()
+    )
+    print(f"constraints (g <= 0): {limits}; {'feasible' if result.feasible else 'NOT feasible'}")
+    for warning in result.warnings:
+        print(f"warning: {warning}")
+
+
+def _water(word: str | None, default: tuple[float, float]) -> tuple[float, float]:
+    if word is None:
+        return default
+    if word in WATERS:
+        return WATERS[word]
+    parts = word.split(",")
+    if len(parts) != 2:
+        raise InputError(f"--water {word}: write salt, fresh or DENSITY,VISCOSITY, for example 998.8,1.09e-6")
+    density = checked_option(parts[0], FieldRule("number", "", "kg/m3", 900.0, 1100.0), "--water density")
+    viscosity = checked_option(parts[1], FieldRule("number", "", "m2/s", 5e-7, 3e-6), "--water viscosity")
+    return float(density or 0.0), float(viscosity or 0.0)
+
+
+def _resistance(arguments: argparse.Namespace) -> int:
+    from hpsop_core.case.sections import ConstantsSection
+    from hpsop_core.evaluation.evaluate import initial_volume, resistance_curve
+    from hpsop_core.evaluation.hull_answer import build_hull, hull_variables, parent_hull, resistance_point, solve_waves
+
+    froude_numbers = number_list(arguments.froude, FROUDE_RULE, "--froude")
+    form_factor = checked_option(arguments.form_factor, FieldRule("number", "", "", 0.0, 1.0), "--form-factor")
+    if (arguments.case is None) == (arguments.offsets is None):
+        raise InputError("resistance: give either a CASE or --offsets FILE.csv with --length and --draft")
+    if arguments.offsets is not None:
+        if arguments.length is None or arguments.draft is None:
+            raise InputError("resistance: --offsets needs --length (Lpp) and --draft, in metres")
+        if arguments.changes:
+            raise InputError("resistance: --set changes a case's design; an offsets table is taken as it is")
+        length = checked_option(arguments.length, FieldRule("number", "", "m", 0.1, 600.0), "--length")
+        draft = checked_option(arguments.draft, FieldRule("number", "", "m", 0.005, 40.0), "--draft")
+        section = HullSection(offsets=str(Path(arguments.offsets)), length=length, draft=draft)
+        parent = parent_hull(section)
+        density, viscosity = _water(arguments.water, WATERS["salt"])
+        hull = parent.transform(parent.length, parent.breadth, parent.draft)
+        points = [
+            resistance_point(
+                hull, wave, froude, gravity=ConstantsSection.gravity, density=density, viscosity=viscosity,
+                form_factor=form_factor or 0.0,
+            )
+            for froude, wave in zip(froude_numbers, solve_waves(hull, arguments.level, froude_numbers), strict=True)
+        ]  # fmt: skip
+    else:
+        if arguments.length is not None or arguments.draft is not None:
+            raise InputError("resistance: --length and --draft go with --offsets; change a case by --set")
+        case, variables = case_and_design(arguments.case, arguments.changes)
+        density, viscosity = _water(arguments.water, (case.constants.density, case.constants.viscosity))
+        case = dataclasses.replace(
+            case, constants=dataclasses.replace(case.constants, density=density, viscosity=viscosity)
+        )
+        points = list(
+            resistance_curve(case, variables, arguments.level, froude_numbers, form_factor=form_factor)
+        )
+        hull = build_hull(hull_variables(case.hull, variables, initial_volume(case)))
+    hydrostatics = hull.hydrostatics
+    figures = {
+        "length": hull.length,
+        "breadth": hull.breadth,
+        "draft": hull.draft,
+        "block_coefficient": hydrostatics.block_coefficient,
+        "displaced_volume": hydrostatics.displaced_volume,
+        "wetted_surface": hydrostatics.wetted_surface,
+        "longitudinal_centre_of_buoyancy": hydrostatics.longitudinal_centre_of_buoyancy,
+    }
+    if hull.parent.fit_report is not None:
+        print(hull.parent.fit_report, file=sys.stderr)
+    if arguments.json:
+        print_json({"hull": figures, "points": [dataclasses.asdict(point) for point in points]})
+        return 0
+    print(", ".join(f"{name} {value:.6g}" for name, value in figures.items()))
+    for warning in dict.fromkeys([*hull.warnings, *(line for point in points for line in point.warnings)]):
+        print(f"warning: {warning}", file=sys.stderr)
+    rows = [
+        [
+            f"{p.froude_number:.4f}", f"{p.speed:.4f}", f"{1e3 * p.friction_coefficient:.4f}",
+            f"{1e3 * p.wave_coefficient:.4f}",
+            "-" if p.wave_coefficient_pressure is None else f"{1e3 * p.wave_coefficient_pressure:.4f}",
+            f"{p.wave_resistance:.6g}", f"{p.total_resistance:.6g}",
+        ]
+        for p in points
+    ]  # fmt: skip
+    print_table(["Fn", "V m/s", "10^3 CF", "10^3 Cw", "10^3 Cw(p)", "Rw N", "Rt N"], rows)
+    return 0
+
+
+def _open_water(arguments: argparse.Namespace) -> int:
+    import numpy as np
+
+    from hpsop_core.evaluation.evaluate import design_propeller
+    from hpsop_core.evaluation.propeller_answer import solve_open_water
+    from hpsop_core.geometry.propeller.propeller import propeller_family, radial_table_from_csv
+    from hpsop_core.hydro.open_water import SectionDrag, reynolds_number_07R
+
+    advance = number_list(arguments.advance, ADVANCE_RULE, "--advance")
+    diameter = checked_option(arguments.diameter, FieldRule("number", "", "m", 0.01, 20.0), "--diameter")
+    rate = checked_option(arguments.rotation_rate, FieldRule("number", "", "1/s", 0.1, 200.0), "--rotation-rate")
+    viscosity = checked_option(arguments.viscosity, FieldRule("number", "", "m2/s", 1e-7, 1e-4), "--viscosity")
+    if (arguments.case is None) == (arguments.geometry is None):
+        raise InputError("open-water: give either a CASE or --geometry FILE.csv with --blades")
+    size = MODEL_TEST[0] if diameter is None else diameter
+    if arguments.geometry is not None:
+        if arguments.blades is None:
+            raise InputError("open-water: --geometry needs --blades, the number of blades")
+        if arguments.changes:
+            raise InputError("open-water: --set changes a case's design; a radial table is taken as it is")
+        blades = checked_option(arguments.blades, FieldRule("integer", "", "", 2, 7), "--blades")
+        table = radial_table_from_csv(Path(arguments.geometry), int(blades or 0))
+        propeller = propeller_family(table, size, int(blades or 0))
+    else:
+        if arguments.blades is not None:
+            raise InputError("open-water: --blades goes with --geometry; change a case by --set blade_count=Z")
+        case, variables = case_and_design(arguments.case, arguments.changes)
+        propeller = design_propeller(case, variables).with_diameter(size)
+    rotation_rate = MODEL_TEST[1] if rate is None else rate
+    kinematic = MODEL_TEST[2] if viscosity is None else viscosity
+    drag = SectionDrag.inviscid() if arguments.inviscid else SectionDrag.model_scale(rotation_rate, kinematic)
+    result = solve_open_water(propeller, arguments.level, advance, drag)
+    reynolds = reynolds_number_07R(propeller, np.array(advance), rotation_rate, kinematic)
+    points: list[dict[str, Any]] = []
+    for j, kt, kq in zip(advance, result.thrust_coefficient, result.torque_coefficient, strict=True):
+        points.append(
+            {
+                "advance_coefficient": j,
+                "thrust_coefficient": float(kt),
+                "torque_coefficient": float(kq),
+                # The identity, so that no rounding of a solver's own stands between the three numbers.
+                "open_water_efficiency": float(j * kt / (2.0 * math.pi * kq)) if kq > 0.0 else None,
+            }
+        )
+    if arguments.json:
+        print_json(
+            {
+                "level": arguments.level,
+                "diameter": propeller.diameter,
+                "blade_count": propeller.blade_count,
+                "expanded_area_ratio": propeller.expanded_area_ratio,
+                "reynolds_number_07R": reynolds.tolist(),
+                "solver": result.solver,
+                "settings": result.settings,
+                "points": points,
+            }
+        )
+        return 0
+    rows = [
+        [f"{p['advance_coefficient']:.4f}", f"{p['thrust_coefficient']:.5f}", f"{10 * p['torque_coefficient']:.5f}",
+         "-" if p["open_water_efficiency"] is None else f"{p['open_water_efficiency']:.4f}"]
+        for p in points
+    ]  # fmt: skip
+    print_table(["J", "KT", "10KQ", "eta0"], rows)
+    print(
+        f"{result.solver}; D {propeller.diameter:g} m, Z {propeller.blade_count}, EAR "
+        f"{propeller.expanded_area_ratio:.3f}, "
+        + ("no viscosity" if arguments.inviscid else f"Re at 0.7 R {reynolds.min():.2e} to {reynolds.max():.2e}")
+    )
+    return 0
+
+
+def _validate(arguments: argparse.Namespace) -> int:
+    from hpsop_core.validation import all_checks
+
+    results = []
+    for check in all_checks():
+        results.append(check)
+        if not arguments.json:
+            mark = "pass" if check.passed else "MISS"
+            print(
+                f"{mark}  {check.group}: {check.quantity}: computed {check.computed:.6g}, reference "
+                f"{check.reference:.6g} ({check.source}; {check.tolerance})",
+                flush=True,
+            )
+    if arguments.json:
+        print_json({"checks": [dataclasses.asdict(check) for check in results]})
+    missed = sum(not check.passed for check in results)
+    print(f"{len(results) - missed} of {len(results)} checks within their tolerance", file=sys.stderr)
+    return 0 if missed == 0 else 1

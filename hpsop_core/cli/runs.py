@@ -1,0 +1,299 @@
+"""The commands ``optimize`` and ``show``."""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import shlex
+import shutil
+import signal
+import sys
+import threading
+from collections.abc import Sequence
+from typing import Any, TextIO
+
+from hpsop_core.cli.arguments import add_json, print_json, print_table
+from hpsop_core.errors import InputError
+from hpsop_core.runs.controller import RunController, front_designs
+from hpsop_core.runs.events import RunEvent, RunSnapshot
+from hpsop_core.runs.reader import RunReader, open_run
+from hpsop_core.runs.records import DesignRecord, identifier
+
+INTERRUPTED = 130
+
+
+def add_parsers(commands: Any) -> None:
+    """Add the two commands to the parser."""
+    run = commands.add_parser("optimize", help="run an optimisation, or go on with one")
+    run.add_argument("case", metavar="CASE", help="a shipped case's name or a TOML file")
+    run.add_argument("--run", metavar="RUN.hpsop", required=True, help="the run file; one that exists is continued")
+    run.add_argument("--generations", type=int, metavar="TOTAL", help="of both levels; the case's by default")
+    run.add_argument("--level1-generations", type=int, metavar="N", help="of these; the case's proportion by default")
+    run.add_argument("--population", type=int, metavar="N", help="designs a generation; the case's by default")
+    run.add_argument("--seed", type=int, metavar="N", help="the case's by default")
+    run.add_argument("--workers", type=int, metavar="N", help="local processes; one a core by default")
+    run.add_argument("--executor", default="local", metavar="local|dask:HOST:PORT", help="where evaluations run")
+    run.add_argument("--seeds-from", metavar="OLD.hpsop", help="begin a new run with the front of an old one")
+    run.set_defaults(handler=_optimize)
+
+    show = commands.add_parser("show", help="what a run has found, also while it goes on")
+    show.add_argument("run", metavar="RUN.hpsop")
+    show.add_argument("--front", action="store_true", help="the Pareto front")
+    show.add_argument("--design", metavar="ID|initial|compromise", help="everything about one design (also: knee)")
+    show.add_argument("--generation", type=int, metavar="N", help="at generation N instead of the last one")
+    add_json(show)
+    show.set_defaults(handler=_show)
+
+
+# -- optimize ------------------------------------------------------------------------------------------------------
+
+
+def _optimize(arguments: argparse.Namespace) -> int:
+    from hpsop_core.case.case import load_case
+
+    case = load_case(arguments.case)
+    controller = RunController(
+        arguments.run,
+        case,
+        generations=arguments.generations,
+        level1_generations=arguments.level1_generations,
+        population=arguments.population,
+        seed=arguments.seed,
+        workers=arguments.workers,
+        executor=arguments.executor,
+        seeds=front_designs(arguments.seeds_from) if arguments.seeds_from else (),
+    )
+    settings = controller.case.optimization
+    progress = Progress(sys.stderr)
+    with controller:
+        total = controller.snapshot().generations
+        level1 = total if settings.level1_generations >= settings.generations else settings.level1_generations
+        plan = f"{controller.case.name}: {total} generations of {settings.population}, {level1} of them at level 1"
+        if arguments.generations is not None and arguments.level1_generations is None and controller.begun:
+            plan += " (the case's proportion)"
+        progress.line(f"{plan}; seed {settings.seed}; {arguments.run}")
+        controller.subscribe(progress)
+        finished = driven(controller, progress)
+    progress.end()
+    if not finished:
+        words = ["hpsop", "optimize", arguments.case, "--run", arguments.run]
+        if arguments.executor != "local":
+            words += ["--executor", arguments.executor]
+        snapshot = controller.snapshot()
+        print(
+            f"paused in generation {min(snapshot.generation + 1, snapshot.generations)} of {snapshot.generations}; "
+            f"all that is finished is kept. Go on with: {shlex.join(words)}",
+            file=sys.stderr,
+        )
+        return INTERRUPTED
+    print("\n".join(_summary_lines(open_run(arguments.run))))
+    return 0
+
+
+def driven(controller: RunController, progress: Progress) -> bool:
+    """Drive to the end; False if a person (or the system, by SIGTERM) interrupted it."""
+    if threading.current_thread() is threading.main_thread():
+        # Also where a shell started us in the background, with the interrupt ignored.
+        signal.signal(signal.SIGINT, _interrupt)
+        signal.signal(signal.SIGTERM, _interrupt)
+    try:
+        controller.start()
+        while not controller.wait(0.2):
+            pass
+        return True
+    except KeyboardInterrupt:
+        progress.line("stopping after the evaluations under way ...")
+        controller.stop()
+        # A second Ctrl-C ends the waiting; what is finished is in the file already.
+        controller.wait()
+        snapshot = controller.snapshot()
+        return snapshot.state == "finished"
+
+
+def _interrupt(number: int, frame: object) -> None:
+    raise KeyboardInterrupt
+
+
+class Progress:
+    """A progress bar on a terminal, a plain line a generation elsewhere."""
+
+    def __init__(self, stream: TextIO) -> None:
+        self._stream = stream
+        self._terminal = stream.isatty()
+        self._guard = threading.Lock()
+        self._width = 0
+
+    def __call__(self, event: RunEvent) -> None:
+        """Show an event of the run."""
+        snapshot = event.snapshot
+        if event.kind == "state" and snapshot.reason and snapshot.state == "paused":
+            self.line(f"paused: {snapshot.reason}")
+        elif event.kind == "handover":
+            self.line(f"generation {snapshot.generation}: {event.text}; level 2 begins")
+        elif event.kind == "failure":
+            self.line(f"design {event.evaluation_id} failed: {event.text}")
+        elif event.kind == "generation" and not self._terminal:
+            self.line(_progress_text(snapshot))
+        elif self._terminal and event.kind in ("generation", "evaluation"):
+            self._bar(snapshot)
+
+    def line(self, text: str) -> None:
+        """Print a line above the bar."""
+        with self._guard:
+            self._clear()
+            print(text, file=self._stream, flush=True)
+
+    def end(self) -> None:
+        """Remove the bar."""
+        with self._guard:
+            self._clear()
+
+    def _clear(self) -> None:
+        if self._width:
+            print("\r" + " " * self._width + "\r", end="", file=self._stream, flush=True)
+            self._width = 0
+
+    def _bar(self, snapshot: RunSnapshot) -> None:
+        text = _progress_text(snapshot)
+        columns = shutil.get_terminal_size().columns - 1
+        room = columns - len(text) - 3
+        if room >= 10:
+            part = snapshot.done / snapshot.population if snapshot.population else 0.0
+            under_way = part if snapshot.generation < snapshot.generations and part < 1.0 else 0.0
+            filled = int(min(1.0, (snapshot.generation + under_way) / max(1, snapshot.generations)) * min(room, 40))
+            text = "[" + "#" * filled + "." * (min(room, 40) - filled) + "] " + text
+        text = text[:columns]
+        with self._guard:
+            print("\r" + text.ljust(self._width), end="", file=self._stream, flush=True)
+            self._width = len(text)
+
+
+def _progress_text(snapshot: RunSnapshot) -> str:
+    text = (
+        f"generation {snapshot.generation}/{snapshot.generations}, level {snapshot.level}, "
+        f"hypervolume {snapshot.hypervolume:.5f}, feasible {100 * snapshot.feasible_share:.0f} %"
+    )
+    if snapshot.failures:
+        text += f", {snapshot.failures} failed"
+    if snapshot.seconds_left is not None:
+        text += f", {_duration(snapshot.seconds_left)} left"
+    return text
+
+
+def _duration(seconds: float) -> str:
+    whole = int(seconds + 0.5)
+    hours, rest = divmod(whole, 3600)
+    return f"{hours}:{rest // 60:02d}:{rest % 60:02d}" if hours else f"{rest // 60}:{rest % 60:02d}"
+
+
+# -- show ----------------------------------------------------------------------------------------------------------
+
+
+def _show(arguments: argparse.Namespace) -> int:
+    run = open_run(arguments.run)
+    if arguments.front and arguments.design is not None:
+        raise InputError("show: --front and --design are two questions; ask one of them")
+    if arguments.design is not None:
+        _show_design(run, arguments)
+    elif arguments.front:
+        _show_designs(run, arguments, run.front(arguments.generation))
+    elif arguments.generation is not None:
+        _show_designs(run, arguments, run.members(arguments.generation))
+    elif arguments.json:
+        print_json(run.summary())
+    else:
+        print("\n".join(_summary_lines(run)))
+    return 0
+
+
+def _show_design(run: RunReader, arguments: argparse.Namespace) -> None:
+    record = run.design(identifier(arguments.design), arguments.generation)
+    if arguments.json:
+        print_json(record.as_dict())
+        return
+    from hpsop_core.cli.physics import print_evaluation
+
+    print(f"design {record.id} ({record.origin}, generation {record.generation})")
+    print_evaluation(record.evaluation)
+
+
+def _show_designs(run: RunReader, arguments: argparse.Namespace, designs: Sequence[DesignRecord]) -> None:
+    generation = run.generation(arguments.generation)
+    initial = run.initial(1 if generation is None else generation.level)
+    if arguments.json:
+        document: dict[str, Any] = {
+            "generation": 0 if generation is None else generation.number,
+            "level": initial.evaluation.level if generation is None else generation.level,
+            "designs": [record.summary() for record in designs],
+            "compromise": None if generation is None else generation.compromise,
+            "knee": None if generation is None else generation.knee,
+            "initial": initial.summary(),
+        }
+        if generation is not None:
+            document |= {"hypervolume": generation.hypervolume, "feasible_share": generation.feasible_share}
+        if generation is not None and not arguments.front:
+            document |= dataclasses.asdict(generation)
+        print_json(document)
+        return
+    if generation is None:
+        print("no generation is finished yet")
+        return
+    what = f"front of {len(designs)}" if arguments.front else f"population of {len(designs)}"
+    print(f"generation {generation.number}, level {generation.level}: {what}, hypervolume {generation.hypervolume:.5f}")
+    space = run.case.bounds.as_dict()
+    free = [name for name, (lower, upper) in space.items() if lower < upper]
+    header = ["id", "", run.case.objectives.first, run.case.objectives.second, *free, "feasible"]
+    marks = {generation.knee: "knee", generation.compromise: "compromise"}
+    rows = [_row(record, marks.get(record.id, ""), free) for record in designs]
+    print_table(header, [*rows, _row(initial, "initial", free)])
+
+
+def _row(record: DesignRecord, mark: str, free: Sequence[str]) -> list[str]:
+    evaluation = record.evaluation
+    values = evaluation.variables.as_dict()
+    objectives = [evaluation.objectives["f1"], evaluation.objectives["f2"]]
+    numbers = ["failed" if value is None else f"{value:.5f}" for value in objectives]
+    return [
+        str(record.id),
+        mark,
+        *numbers,
+        *(f"{values[name]:.6g}" for name in free),
+        "yes" if evaluation.feasible else "no",
+    ]
+
+
+def _summary_lines(run: RunReader) -> list[str]:
+    summary = run.summary()
+    lines = [
+        f"{summary['run']}: {summary['case']}, {summary['state']}"
+        + (f" ({summary['reason']})" if summary["reason"] else ""),
+        f"generation {summary['generation']} of {summary['generations']} (population {summary['population']}, "
+        f"seed {summary['seed']}), begun {summary['created']}",
+    ]
+    if summary["state"] == "interrupted":
+        lines.append(f"to go on: the same 'hpsop optimize ... --run {summary['run']}' again, or Continue on the page")
+    for level, numbers in summary["evaluations"].items():
+        wall = summary["wall_seconds"].get(level, 0.0)
+        lines.append(
+            f"level {level}: {summary['generations_by_level'].get(level, 0)} generations in {_duration(wall)}, "
+            f"{numbers['count']} evaluations ({numbers['feasible']} feasible, {numbers['failed']} failed), "
+            f"{1e3 * numbers['processor_seconds'] / max(1, numbers['count']):.1f} ms each"
+        )
+    if "hypervolume" in summary:
+        spread = summary["spread"]
+        lines.append(
+            f"front: {summary['front_size']} designs, hypervolume {summary['hypervolume']:.5f}, "
+            f"spread {'-' if spread is None else format(spread, '.3f')}, "
+            f"feasible {100 * summary['feasible_share']:.0f} % of the population"
+        )
+    for name in ("compromise", "knee"):
+        if summary.get(name) is not None:
+            record = run.design(summary[name])
+            objectives = record.evaluation.objectives
+            first, second = summary["objectives"]
+            lines.append(
+                f"{name}: design {record.id}, {first} {objectives['f1']:.4f}, {second} {objectives['f2']:.4f}"
+            )
+    started = summary["journal"][-5:]
+    lines.extend(f"{entry['at']}  {entry['text']}" for entry in started)
+    return lines

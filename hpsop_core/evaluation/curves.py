@@ -1,0 +1,145 @@
+"""What is drawn of a design beyond its evaluation: resistance and thrust over speed, sections, sectional areas."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.interpolate import CubicSpline, PchipInterpolator
+
+from hpsop_core.case.case import Case
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.errors import SolverFailure
+from hpsop_core.evaluation.evaluate import Reference, design_hull, resistance_curve
+from hpsop_core.evaluation.hull_answer import ResistancePoint
+from hpsop_core.evaluation.result import Evaluation, OpenWaterCurve
+from hpsop_core.typing_aliases import Array
+
+FROUDE_MARGIN = 0.05
+"""Resistance curves reach this far beyond the conditions' Froude numbers, within 0.1 to 0.5."""
+
+_FROUDE_STEP = 0.01
+# The classic twenty, denser towards the ends where the form changes fast, and the bulb ahead of FP.
+_STATIONS = np.array([-0.2, 0.0, 0.5, 1.0, 1.5, *range(2, 19), 18.5, 19.0, 19.5, 20.0, 20.2])
+
+
+def froude_range(evaluation: Evaluation, above: float = FROUDE_MARGIN) -> tuple[float, ...]:
+    """Froude numbers, ascending, at which a design's resistance is tabulated; its conditions are among them.
+
+    Args:
+        evaluation: the design's.
+        above: how far beyond the greatest condition.
+    """
+    conditions = [condition.froude_number for condition in evaluation.conditions]
+    low, high = max(0.1, min(conditions) - FROUDE_MARGIN), min(0.5, max(conditions) + above)
+    steps = np.arange(np.ceil(low / _FROUDE_STEP), np.floor(high / _FROUDE_STEP) + 1) * _FROUDE_STEP
+    return tuple(sorted({*(round(float(value), 6) for value in steps), *conditions}))
+
+
+def resistance_points(
+    case: Case, evaluation: Evaluation, reference: Reference, above: float = FROUDE_MARGIN
+) -> tuple[ResistancePoint, ...]:
+    """Resistance over ``froude_range`` at the evaluation's level, calibrated as the evaluation was.
+
+    Raises:
+        SolverFailure: the design has no conditions, or a speed cannot be computed.
+    """
+    if not evaluation.conditions:
+        raise SolverFailure("curves", evaluation.reason or "the design has no operating conditions")
+    return resistance_curve(case, evaluation.variables, evaluation.level, froude_range(evaluation, above), reference)
+
+
+@dataclass(frozen=True, eq=False)
+class ThrustCurves:
+    """Thrust over speed.
+
+    Attributes:
+        froude_number: (n,) on the design's own length.
+        required: (n,) Rt/(1 - t) in N.
+        available: one (n,) a condition: T in N at that condition's rate of rotation; NaN outside the open-water curve.
+    """
+
+    froude_number: Array
+    required: Array
+    available: tuple[Array, ...]
+
+
+def thrust_curves(case: Case, evaluation: Evaluation, points: tuple[ResistancePoint, ...]) -> ThrustCurves:
+    """Thrust required and available over the speeds of a resistance curve.
+
+    Raises:
+        SolverFailure: the design has no open-water curves.
+    """
+    curve = evaluation.open_water
+    if curve is None or not evaluation.conditions:
+        raise SolverFailure("curves", evaluation.reason or "the design has no open-water curves")
+    speed = np.array([point.speed for point in points])
+    diameter = evaluation.variables.diameter
+    thrust_coefficient = CubicSpline(curve.advance_coefficient, curve.thrust_coefficient, extrapolate=False)
+    available = []
+    for condition in evaluation.conditions:
+        rate = condition.rotation_rate_rpm / 60.0
+        advance = (1.0 - condition.wake_fraction) * speed / (rate * diameter)
+        available.append(case.constants.density * rate**2 * diameter**4 * thrust_coefficient(advance))
+    total = np.array([point.total_resistance for point in points])
+    return ThrustCurves(
+        froude_number=np.array([point.froude_number for point in points]),
+        required=total / (1.0 - evaluation.conditions[0].thrust_deduction),
+        available=tuple(available),
+    )
+
+
+def through(x: Array, y: Array, count: int = 200) -> tuple[Array, Array]:
+    """A line without overshoot through points (n,), for drawing; the points are among its own, NaN is left out."""
+    keep = np.isfinite(y)
+    if np.count_nonzero(keep) < 3:
+        return x[keep], y[keep]
+    dense = np.union1d(np.linspace(x[keep][0], x[keep][-1], count), x[keep])
+    return dense, np.asarray(PchipInterpolator(x[keep], y[keep])(dense))
+
+
+def smooth_open_water(curve: OpenWaterCurve, count: int = 181) -> tuple[Array, Array, Array, Array]:
+    """J, KT, 10KQ and efficiency, each (count,): splines through the tabulated KT and KQ; NaN where KT <= 0."""
+    advance = np.asarray(curve.advance_coefficient)
+    j = np.linspace(advance[0], advance[-1], count)
+    kt, kq = (
+        np.asarray(CubicSpline(advance, values)(j)) for values in (curve.thrust_coefficient, curve.torque_coefficient)
+    )
+    gives = (kt > 0.0) & (kq > 0.0)
+    efficiency = np.full(count, np.nan)
+    efficiency[gives] = j[gives] * kt[gives] / (2.0 * np.pi * kq[gives])
+    return j, np.where(gives, kt, np.nan), np.where(gives, 10.0 * kq, np.nan), efficiency
+
+
+@dataclass(frozen=True, eq=False)
+class HullLines:
+    """Sections and areas of a hull.
+
+    Attributes:
+        sections: (station from 0 at AP to 20 at FP, polylines (n, 2) of y and z in m, port side).
+        area_station: (n,) x/Lpp from AP.
+        area: (n,) immersed sectional area in m2.
+        draft: in m.
+    """
+
+    sections: tuple[tuple[float, tuple[Array, ...]], ...]
+    area_station: Array
+    area: Array
+    draft: float
+
+
+def hull_lines(case: Case, variables: DesignVariables) -> HullLines:
+    """Sections and sectional areas of a design.
+
+    Raises:
+        SolverFailure: the form cannot be made.
+    """
+    hull = design_hull(case, variables)
+    cut = zip(_STATIONS, hull.sections(_STATIONS / 20.0 * hull.length, points=41), strict=True)
+    hydrostatics = hull.hydrostatics
+    return HullLines(
+        sections=tuple((float(station), tuple(line[:, 1:] for line in lines)) for station, lines in cut if lines),
+        area_station=np.asarray(hydrostatics.sectional_area_x) / hull.length,
+        area=np.asarray(hydrostatics.sectional_area),
+        draft=hull.draft,
+    )

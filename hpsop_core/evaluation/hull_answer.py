@@ -1,0 +1,199 @@
+"""From the design's hull to its resistance at any Froude number; remembered apart from the propeller."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+
+from hpsop_core.case.sections import HullSection
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.errors import InputError, SolverFailure
+from hpsop_core.geometry.hull.hull import Hull, ParentHull, load_parent_hull
+from hpsop_core.geometry.hull.input import parent_hull_from_offsets, parent_hull_from_stl
+from hpsop_core.hydro import michell
+from hpsop_core.hydro.friction import ittc57_coefficient
+
+
+@dataclass(frozen=True)
+class HullVariables:
+    """What of a design decides the hull; the key under which its waves are remembered.
+
+    Attributes:
+        section: the parent and the kind of form.
+        length, breadth, draft: in m.
+        displaced_volume: asked, in m3; None for scaling alone.
+        buoyancy_centre_shift: in m, forward.
+    """
+
+    section: HullSection
+    length: float
+    breadth: float
+    draft: float
+    displaced_volume: float | None
+    buoyancy_centre_shift: float
+
+
+@dataclass(frozen=True)
+class WaveAnswer:
+    """A solver's answer at one Froude number.
+
+    Attributes:
+        wave_coefficient: Rw over 1/2 rho V^2 S, S the design's own static wetted surface.
+        wave_coefficient_pressure: level 2's cross-check, else None.
+        sinkage: level 2, in m, positive down; trim: in rad, positive bow down; else None.
+        warnings: what the solver says about its answers, one line each.
+    """
+
+    wave_coefficient: float
+    wave_coefficient_pressure: float | None = None
+    sinkage: float | None = None
+    trim: float | None = None
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class ResistancePoint:
+    """Resistance at one speed; see ConditionResult for the meaning of each number."""
+
+    froude_number: float
+    speed: float
+    friction_coefficient: float
+    friction_resistance: float
+    wave_coefficient: float
+    wave_resistance: float
+    total_resistance: float
+    wave_coefficient_pressure: float | None
+    sinkage: float | None
+    trim: float | None
+    wave_calibration: float
+    warnings: tuple[str, ...] = ()
+
+
+@lru_cache(maxsize=8)
+def parent_hull(section: HullSection) -> ParentHull:
+    """The parent hull that a case names.
+
+    Raises:
+        InputError: a file that cannot be used.
+    """
+    if section.offsets or section.stl:
+        if section.length is None or section.draft is None:
+            raise ValueError("HullSection refuses this")
+        if section.offsets:
+            return parent_hull_from_offsets(Path(section.offsets), section.length, section.draft)
+        return parent_hull_from_stl(Path(section.stl), section.stl_unit, section.draft, section.length)
+    return load_parent_hull(section.parent)
+
+
+@lru_cache(maxsize=512)
+def build_hull(variables: HullVariables) -> Hull:
+    """The hull of a design.
+
+    Raises:
+        SolverFailure: the form cannot be made.
+    """
+    return parent_hull(variables.section).transform(
+        variables.length,
+        variables.breadth,
+        variables.draft,
+        variables.displaced_volume,
+        variables.buoyancy_centre_shift,
+    )
+
+
+def hull_variables(section: HullSection, variables: DesignVariables, initial_volume: float) -> HullVariables:
+    """The hull's share of a design; ``initial_volume`` is V0, which the displacement ratio refers to."""
+    return HullVariables(
+        section=section,
+        length=variables.length,
+        breadth=variables.breadth,
+        draft=variables.draft,
+        displaced_volume=initial_volume * variables.displacement_ratio if section.form == "shift" else None,
+        buoyancy_centre_shift=variables.buoyancy_centre_shift * variables.length,
+    )
+
+
+@lru_cache(maxsize=4096)
+def wave_answers(variables: HullVariables, level: int, froude_numbers: tuple[float, ...]) -> tuple[WaveAnswer, ...]:
+    """Wave resistance of a hull as the level's solver gives it, before any calibration.
+
+    Raises:
+        SolverFailure: the solver cannot give a number.
+    """
+    hull = build_hull(variables)
+    return solve_waves(hull, level, froude_numbers)
+
+
+def solve_waves(hull: Hull, level: int, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:
+    """As ``wave_answers``, for a hull at hand.
+
+    Raises:
+        SolverFailure: the solver cannot give a number, or is not made for one of these Froude numbers.
+    """
+    if level == 1:
+        table = hull.offset_table()
+        coefficients = michell.wave_coefficients(
+            table.x, table.z, table.y, hull.length, hull.hydrostatics.wetted_surface, froude_numbers
+        )
+        return tuple(WaveAnswer(float(value)) for value in coefficients)
+    # Loaded when it is needed: its compiled kernels take a second to load, and level 1 must answer at once.
+    from hpsop_core.hydro.rankine import solver as rankine
+
+    try:
+        result = rankine.solve(hull, froude_numbers)
+    except InputError as problem:
+        # Froude numbers follow from a design's length at fixed speed: out of range is that design's failure.
+        raise SolverFailure("rankine", str(problem)) from problem
+    return tuple(
+        WaveAnswer(
+            point.wave_coefficient, point.wave_coefficient_pressure, point.sinkage, point.trim, result.warnings
+        )
+        for point in result.conditions
+    )
+
+
+def resistance_point(
+    hull: Hull,
+    wave: WaveAnswer,
+    froude_number: float,
+    *,
+    gravity: float,
+    density: float,
+    viscosity: float,
+    form_factor: float,
+    wave_calibration: float = 1.0,
+) -> ResistancePoint:
+    """Total resistance (1 + k) Rf + Rw of a hull at a Froude number.
+
+    Args:
+        hull: the design's.
+        wave: the level's answer at this Froude number.
+        froude_number: V/sqrt(g Lpp).
+        gravity, density, viscosity: in SI units.
+        form_factor: k on ITTC-57 friction.
+        wave_calibration: factor on the wave resistance.
+
+    Raises:
+        SolverFailure: Reynolds number too small for the friction line.
+    """
+    speed: float = froude_number * (gravity * hull.length) ** 0.5
+    dynamic = 0.5 * density * speed**2 * hull.hydrostatics.wetted_surface
+    friction_coefficient = ittc57_coefficient(speed * hull.length / viscosity)
+    wave_coefficient = wave.wave_coefficient * wave_calibration
+    friction, waves = friction_coefficient * dynamic, wave_coefficient * dynamic
+    return ResistancePoint(
+        froude_number=froude_number,
+        speed=speed,
+        friction_coefficient=friction_coefficient,
+        friction_resistance=friction,
+        wave_coefficient=wave_coefficient,
+        wave_resistance=waves,
+        total_resistance=(1.0 + form_factor) * friction + waves,
+        wave_coefficient_pressure=wave.wave_coefficient_pressure,
+        sinkage=wave.sinkage,
+        trim=wave.trim,
+        wave_calibration=wave_calibration,
+        warnings=wave.warnings,
+    )

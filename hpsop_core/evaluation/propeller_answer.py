@@ -1,0 +1,130 @@
+"""From the design's propeller to its open-water curves at full scale; remembered apart from the hull."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+from dataclasses import dataclass
+from functools import lru_cache
+from pathlib import Path
+from typing import TYPE_CHECKING
+
+import numpy as np
+
+from hpsop_core.case.sections import PropellerSection
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.geometry.propeller.input import radial_table_from_csv
+from hpsop_core.geometry.propeller.propeller import Propeller, RadialTable, load_propeller, propeller_family
+from hpsop_core.hydro.lifting_line import solver as lifting_line
+from hpsop_core.hydro.open_water import OpenWater, SectionDrag
+from hpsop_core.hydro.operating_point import PropellerCurve, chebyshev_nodes
+from hpsop_core.typing_aliases import Array
+
+if TYPE_CHECKING:
+    from hpsop_core.hydro.blade_panels.pressure import BladePressureTable
+
+# Operating points of a ship's propeller lie between; beyond the upper end P4119 gives no thrust.
+ADVANCE_RANGE = (0.25, 1.15)
+NODE_COUNT = 7
+
+
+@dataclass(frozen=True)
+class PropellerVariables:
+    """What of a design decides the propeller; the key under which its curves are remembered."""
+
+    section: PropellerSection
+    diameter: float
+    blade_count: int
+    pitch_ratio: float
+    expanded_area_ratio: float
+
+
+def propeller_variables(section: PropellerSection, variables: DesignVariables) -> PropellerVariables:
+    """The propeller's share of a design."""
+    return PropellerVariables(
+        section, variables.diameter, variables.blade_count, variables.pitch_ratio, variables.expanded_area_ratio
+    )
+
+
+@lru_cache(maxsize=8)
+def parent_table(section: PropellerSection) -> RadialTable:
+    """The radial table that a case names.
+
+    Raises:
+        InputError: a file that cannot be used.
+    """
+    if section.geometry:
+        return radial_table_from_csv(Path(section.geometry), section.geometry_blade_count)
+    return load_propeller(section.parent)
+
+
+@lru_cache(maxsize=512)
+def build_propeller(variables: PropellerVariables) -> Propeller:
+    """The propeller of a design.
+
+    Raises:
+        SolverFailure: the family does not reach it.
+    """
+    return propeller_family(
+        parent_table(variables.section),
+        variables.diameter,
+        variables.blade_count,
+        variables.pitch_ratio,
+        variables.expanded_area_ratio,
+    )
+
+
+@dataclass(frozen=True, eq=False)
+class PropellerAnswer:
+    """What is remembered of a propeller at a level.
+
+    Attributes:
+        curve: KT and KQ over J.
+        pressures: level 2: the pressures on its blades over J, else None.
+    """
+
+    curve: PropellerCurve
+    pressures: BladePressureTable | None
+
+
+@lru_cache(maxsize=4096)
+def propeller_answer(variables: PropellerVariables, level: int, roughness: float) -> PropellerAnswer:
+    """Open-water curves at full scale between the ends of ``ADVANCE_RANGE``, and at level 2 the blades' pressures.
+
+    The section drag is ITTC-78's rough line, which does not depend on the rate of revolutions, so one curve serves
+    every condition.
+
+    Args:
+        variables: the propeller.
+        level: 1 lifting line, 2 panel method.
+        roughness: of the blades, in m.
+
+    Raises:
+        SolverFailure: the solver does not converge; names the J.
+    """
+    nodes = chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
+    propeller, drag = build_propeller(variables), SectionDrag.full_scale(roughness)
+    if level == 1:
+        result, pressures = lifting_line.solve(propeller, nodes, drag), None
+    else:
+        from hpsop_core.hydro.blade_panels import solver as blade_panels
+
+        panels = blade_panels.solve(propeller, nodes, drag)
+        result, pressures = panels.open_water, panels.pressure_table()
+    return PropellerAnswer(PropellerCurve(nodes, result.thrust_coefficient, result.torque_coefficient), pressures)
+
+
+def solve_open_water(
+    propeller: Propeller, level: int, advance_coefficients: Array | Sequence[float], drag: SectionDrag
+) -> OpenWater:
+    """Open-water results of a propeller at a level, straight from its solver.
+
+    Raises:
+        SolverFailure: the solver does not converge; names the J.
+    """
+    advance = np.asarray(advance_coefficients, dtype=float)
+    if level == 1:
+        return lifting_line.solve(propeller, advance, drag)
+    # Loaded when it is needed: its compiled kernels take a second to load, and level 1 must answer at once.
+    from hpsop_core.hydro.blade_panels import solver as blade_panels
+
+    return blade_panels.solve(propeller, advance, drag).open_water

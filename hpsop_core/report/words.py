@@ -1,0 +1,178 @@
+"""What a case assumes, and how far its numbers can be trusted, in sentences. Markup: everything of a case is "
+"escaped."""
+
+from __future__ import annotations
+
+from hpsop_core.case.case import Case
+from hpsop_core.quantities import OBJECTIVE_TITLES, VARIABLES, number_text
+from hpsop_core.report.html_page import bullets, facts, symbol, table, text
+
+_FORM = {
+    "shift": "Length, breadth and draft scale the parent hull; the displacement asked for is then reached by moving "
+    "its sections along the ship (a true change of block coefficient), as far as the parent's form carries it.",
+    "affine": "Length, breadth and draft scale the parent hull and nothing else: the block coefficient of the geometry "
+    "stays the parent's. Displacement and block coefficient are only <em>booked</em>: they enter wake, thrust "
+    "deduction and the displacement constraint, not the hull's shape.",
+}
+_SPEED = {
+    "fixed": "Every design runs at the same speeds: the initial design's at the Froude numbers below.",
+    "froude": "Every design runs at the Froude numbers below on its own length, so a shorter ship is judged at a lower "
+    "speed.",
+}
+_CALIBRATION = {
+    "level2": "scaled by one factor a condition, so that the initial design has its level-2 value",
+    "stated": "scaled by one factor a condition, so that the initial design has the wave coefficients stated in the "
+    "case",
+    "none": "used as Michell's integral gives it, which on a flat stern like the DTC's is several times too high",
+}
+_OBJECTIVES = {
+    "resistance": "total resistance over the initial design's, weighted sum over the conditions",
+    "efficiency": "the initial design's open-water efficiency over the design's, weighted sum (less is better)",
+    "delivered_power": "delivered power over the initial design's, weighted sum",
+    "displacement": "the initial design's displacement over the design's (less is better)",
+    "cavitation_margin": "1 minus the margin of blade area over Keller's requirement at the first condition",
+}
+
+
+def objective_lines(case: Case) -> list[str]:
+    """The two objectives in words."""
+    names = (case.objectives.first, case.objectives.second)
+    return [
+        f"{symbol(f'f_{number}')}: {text(_OBJECTIVES[name])} <span class=unit>({text(OBJECTIVE_TITLES[name])})</span>"
+        for number, name in enumerate(names, start=1)
+    ]
+
+
+def assumptions(case: Case) -> str:
+    """Form, speed, conditions, objectives, constraints with their level, calibration and constants."""
+    hull, propeller, limits, constants = case.hull, case.propeller, case.constraints, case.constants
+    hull_file = hull.offsets or hull.stl
+    own_hull = f"own hull from {text(hull_file)}" if hull_file else f"parent hull {text(hull.parent)}"
+    own_blades = (
+        f"own propeller from {text(propeller.geometry)}"
+        if propeller.geometry
+        else f"parent propeller {text(propeller.parent)}"
+    )
+    keller = (
+        "at both levels" if limits.g3_level == 1 else "at level 2 only: the search at level 1 does not see cavitation"
+    )
+    lines = [
+        f"<strong>Parents</strong>: {own_hull}, {own_blades}.",
+        f"<strong>Hull form</strong> ({text(hull.form)}): {_FORM[hull.form]}",
+        f"<strong>Speed</strong> ({text(case.conditions.speed)}): {_SPEED[case.conditions.speed]}",
+        "<strong>Level 1</strong> (fast): Michell's thin-ship integral and a lifting line. <strong>Level 2</strong> "
+        "(slow, better): Rankine panels on hull and water surface, panels on blades and hub. Friction by ITTC-57 at "
+        "both.",
+        f"<strong>Calibration</strong>: level 1's wave resistance is {_CALIBRATION[constants.wave_calibration]}.",
+        f"<strong>Constraints</strong>: displacement within {number_text(100.0 * limits.displacement_tolerance, 1)} % "
+        f"of the initial design's (g<sub>1</sub>) and D/d from {number_text(limits.diameter_to_draft_lower, 2)} to "
+        f"{number_text(limits.diameter_to_draft_upper, 2)} (g<sub>2</sub>), at both levels; expanded area ratio at "
+        f"least Keller's with K = {number_text(limits.keller_k, 2)} at the first condition (g<sub>3</sub>), {keller}; "
+        "the form carries what is asked and the blades clear the hull, at both levels.",
+    ]
+    if hull.form == "affine":
+        lines.append(
+            f"A booked block coefficient outside {number_text(limits.booked_block_coefficient_lower, 2)} to "
+            f"{number_text(limits.booked_block_coefficient_upper, 2)} counts as infeasible."
+        )
+    conditions = table(
+        ["condition", "Froude number Fn", "weight"],
+        [
+            [str(number), number_text(froude, 3), number_text(weight, 2)]
+            for number, (froude, weight) in enumerate(
+                zip(case.conditions.froude_numbers, case.conditions.weights, strict=True), start=1
+            )
+        ],
+        caption="Operating conditions",
+    )
+    return (
+        f"{bullets(lines)}<h3>Objectives, both "
+        f"minimised</h3>{bullets(objective_lines(case))}{conditions}{_design_space(case)}<h3>Constants</h3>{_constants(case)}"
+    )
+
+
+def _design_space(case: Case) -> str:
+    initial = case.initial.variables.as_dict()
+    rows = []
+    for quantity in VARIABLES:
+        lower, upper = case.bounds.as_dict()[quantity.key]
+        scale = 100.0 if quantity.unit == "%" else 1.0
+        numbers = [number_text(scale * value, quantity.decimals) for value in (initial[quantity.key], lower, upper)]
+        unit = f' <span class=unit>[{text(quantity.unit or "–")}]</span>'
+        spread = numbers[1:] if lower < upper else [numbers[1], "fixed"]
+        rows.append([f"{text(quantity.label)} {symbol(quantity.symbol)}{unit}", numbers[0], *spread])
+    return table(["variable", "initial design", "lower bound", "upper bound"], rows, caption="Design space")
+
+
+def _constants(case: Case) -> str:
+    c = case.constants
+    wake = (
+        "Taylor's table for single-screw ships, quadratic fit"
+        if c.wake_formula == "taylor_quadratic"
+        else "0.5 C<sub>B</sub> − 0.05"
+    )
+    return facts(
+        [
+            ("water", f"ρ {number_text(c.density, 1)} kg/m³, ν {c.viscosity * 1e6:.4g} · 10<sup>−6</sup> m²/s"),
+            ("gravity", f"{c.gravity:.6g} m/s²"),
+            (
+                "pressure",
+                f"atmosphere {number_text(1e-3 * c.atmospheric_pressure, 1)} kPa, "
+                f"vapour {number_text(1e-3 * c.vapour_pressure, 2)} kPa",
+            ),
+            ("form factor k on friction", number_text(c.form_factor, 3)),
+            ("wake fraction w", wake),
+            ("thrust deduction t", f"{number_text(c.thrust_deduction_factor, 2)} w (Schoenherr)"),
+            ("relative rotative efficiency", number_text(c.relative_rotative_efficiency, 3)),
+            ("blade roughness", f"{number_text(1e6 * c.propeller_roughness, 0)} µm"),
+            ("not included", "correlation allowance, air drag, appendages, waves and wind, shallow water"),
+        ]
+    )
+
+
+def trust(case: Case, level: int | None) -> str:
+    """How far the numbers can be trusted; short, and true of this case."""
+    lines = []
+    if level == 1:
+        lines.append(
+            "<strong>All results here are of level 1.</strong> Its ranking of similar hulls is useful; its absolute "
+            "wave resistance is only as good as its calibration. Let the run reach level 2 before deciding anything."
+        )
+    if case.hull.form == "affine":
+        lines.append(
+            "<strong>The block coefficient is only booked.</strong> A change of fullness costs no resistance here, as "
+            "it would on a real ship: gains that come with a higher booked block coefficient are not to be believed."
+        )
+    if case.constants.wave_calibration == "none":
+        lines.append(
+            "Plain Michell gives about seven times the wave resistance measured in the towing tank on the DTC's wide "
+            "flat stern, so level 1 exaggerates what slenderness gains."
+        )
+    if case.conditions.speed == "froude":
+        lines.append(
+            "Designs of different lengths are compared at different speeds; at one contract speed the order may differ."
+        )
+    if case.hull.offsets or case.hull.stl or case.propeller.geometry:
+        lines.append(
+            "<strong>Own geometry.</strong> The checks below were made with the DTC and P4119; none was made with the "
+            "hull or propeller of this case."
+        )
+    lines += [
+        "<strong>Resistance, level 2.</strong> On the DTC model the total resistance coefficient is within 2 % of the "
+        "towing tank at Froude numbers 0.174 to 0.218 (wave part at 0.218: 3.8 against 3.4 · 10<sup>−4</sup>). No test "
+        "exists above 0.218: what stands here at 0.27 is extrapolation. Linear potential flow: no viscous stern, no "
+        "breaking waves, hull fixed in its static position.",
+        "<strong>Propeller.</strong> Against the open-water test of P4119, thrust and torque of level 2 are within 4 "
+        "%, between J 0.5 and 0.9. Full scale, other blade counts and other areas rest on theory.",
+        "<strong>Hull and propeller together.</strong> Wake and thrust deduction are regressions on the block "
+        "coefficient, not computed flow: absolute power can be off by more than all differences in these tables. "
+        "Differences between similar designs are worth more than the absolute numbers.",
+        "<strong>Not looked at</strong>: strength of hull and blades, stability, cargo space, seakeeping, manoeuvring, "
+        "vibration, cost. The form is fitted, not faired by hand.",
+        "<strong>Efficiency is not power.</strong> A propeller of better open-water efficiency can need more power "
+        "on a worse hull; read delivered power.",
+    ]
+    return bullets(lines) + (
+        '<p class="soft">Every check with its source: <code>hpsop validate</code>; what each theory neglects stands in '
+        "hpsop's documentation.</p>"
+    )

@@ -1,0 +1,63 @@
+"""The reference of a case file's fields, made from their declarations.
+
+``python -m tools.case_reference > docs/case.md``
+"""
+
+from __future__ import annotations
+
+import math
+import sys
+
+from hpsop_core.case.case import SECTIONS, SHIPPED_CASES, load_case
+from hpsop_core.case.fields import FieldRule, rules, toml_value
+from hpsop_core.case.variables import VARIABLE_RULES
+
+_HEAD = """# The case file
+
+A case is a TOML file. `hpsop evaluate CASE` takes a shipped case's name or such a file; the page saves one by
+*Save case*. Unknown fields, reversed bounds, NaN and numbers outside their limits are refused in one line. This page is
+made from the code by `python -m tools.case_reference > docs/case.md`; a test compares them.
+
+Files that a case names (`offsets`, `stl`, `geometry`) are relative to the case file.
+"""
+
+_BOUNDS = """
+## [bounds]
+
+Lower and upper bound of each design variable; equal bounds fix it. The last three are fixed at the initial design's
+values unless stated.
+
+| variable | unit | may be | meaning |
+|---|---|---|---|"""
+
+
+def case_reference() -> str:
+    """The whole page as Markdown."""
+    parts = [_HEAD, "## Shipped cases\n"]
+    for name in SHIPPED_CASES:
+        case = load_case(name)
+        parts.append(f"* **{name}**: {case.title}. {' '.join(case.description.split())}")
+    parts.append(_BOUNDS)
+    for name, rule in VARIABLE_RULES.items():
+        parts.append(f"| {name} | {rule.unit or '-'} | {_limits(rule)} | {rule.meaning} |")
+    for section, declaration in SECTIONS.items():
+        parts.append(f"\n## [{section}]\n\n{(declaration.__doc__ or '').strip()}\n")
+        parts.append("| field | default | unit | may be | meaning |\n|---|---|---|---|---|")
+        for name, rule in rules(declaration).items():
+            default = getattr(declaration, name, None)
+            shown = "-" if default is None else toml_value(default)
+            parts.append(f"| {name} | {shown} | {rule.unit or '-'} | {_limits(rule)} | {rule.meaning} |")
+    return "\n".join(parts) + "\n"
+
+
+def _limits(rule: FieldRule) -> str:
+    if rule.choices:
+        return ", ".join(rule.choices)
+    if not math.isfinite(rule.lower):
+        return {"text": "any text", "flag": "true, false"}[rule.kind]
+    words = {"integer": "whole, ", "numbers": "list, each "}.get(rule.kind, "")
+    return f"{words}{rule.lower:g} to {rule.upper:g}"
+
+
+if __name__ == "__main__":
+    sys.stdout.write(case_reference())
