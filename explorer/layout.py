@@ -6,10 +6,10 @@ from typing import Any
 
 import viser
 
-from explorer.server import guard
+from explorer.server.guard import guard
 from explorer.server.bridge import Bridge, PageEvent
 from explorer.state.session import LEFT_DOCK, AppState, Session
-from explorer.views import chart_tabs
+from explorer.views.chart_tabs import chart_tabs
 from explorer.views.charts_view import ChartsView
 from explorer.views.compare_view import CompareView
 from explorer.views.design_view import DesignView

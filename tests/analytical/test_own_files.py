@@ -10,7 +10,7 @@ import pytest
 
 from hpsop_core.assets import read_asset_text
 from hpsop_core.case.case import load_case
-from hpsop_core.cli import main
+from hpsop_core.cli.main import main
 from hpsop_core.evaluation.evaluate import evaluate
 
 

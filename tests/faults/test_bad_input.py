@@ -7,7 +7,7 @@ from pathlib import Path
 import pytest
 
 from hpsop_core.assets import read_asset_text
-from hpsop_core.cli import main
+from hpsop_core.cli.main import main
 
 PAPER = read_asset_text("cases", "dtc-p4119-paper.toml")
 HULL, BLADE = 'parent = "dtc"', 'parent = "p4119"'

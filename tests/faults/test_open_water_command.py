@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 from hpsop_core.assets import read_asset_text
-from hpsop_core.cli import main
+from hpsop_core.cli.main import main
 
 HEAD = "r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c"
 

@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import pytest
 
-from hpsop_core.cli import main
+from hpsop_core.cli.main import main
 
 LENGTH, BREADTH, DRAFT = 100.0, 10.0, 6.25
 STATIONS, WATERLINES = np.linspace(0.0, LENGTH, 41), np.linspace(0.0, DRAFT, 11)

@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 
 from hpsop_core import load_case
-from hpsop_core.cli import main
+from hpsop_core.cli.main import main
 from hpsop_core.report import html_page, report
 from hpsop_core.runs.controller import RunController
 

@@ -15,7 +15,7 @@ from pathlib import Path
 import pytest
 from run_files import content
 
-from hpsop_core.cli import main
+from hpsop_core.cli.main import main
 
 RUN = "run.hpsop"
 VARIABLES = [

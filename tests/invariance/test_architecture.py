@@ -13,14 +13,16 @@ LAYERS = {
     "geometry": 1,
     "hydro": 2,
     "evaluation": 3,
-    "optimization": 4,
-    "runs": 5,
-    "export": 6,
-    "validation": 6,
-    "cli": 7,
-    "explorer": 7,
+    "quantities": 4,
+    "optimization": 5,
+    "runs": 6,
+    "export": 7,
+    "report": 8,
+    "validation": 8,
+    "reproduction": 9,
+    "cli": 10,
+    "explorer": 10,
 }
-EVALUATION = {"evaluation", "resistance", "propulsion"}
 
 
 def layer(module: str) -> int:
@@ -29,9 +31,7 @@ def layer(module: str) -> int:
     if package == "explorer":
         return LAYERS["explorer"]
     name = rest[0] if rest else ""
-    if name.startswith("cli"):
-        return LAYERS["cli"]
-    return LAYERS["evaluation"] if name in EVALUATION else LAYERS.get(name, 0)
+    return LAYERS.get(name, 0)
 
 
 def imported(path: Path) -> set[str]:
@@ -60,7 +60,7 @@ def test_imports_run_downwards(path: Path) -> None:
 
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_geometry_and_hydro_hold_no_case_data(path: Path) -> None:
-    if path.parent.name in ("geometry", "hydro"):
+    if {"geometry", "hydro"} & set(path.relative_to(ROOT).parts):
         assert not {name for name in imported(path) if name.startswith("hpsop_core.case.case")}
 
 

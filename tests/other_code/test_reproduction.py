@@ -9,7 +9,7 @@ import pytest
 from html_reading import Page, check
 
 from hpsop_core import load_case
-from hpsop_core.cli import main
+from hpsop_core.cli.main import main
 from hpsop_core.reproduction import page as reproduction_page
 from hpsop_core.reproduction import paper
 from hpsop_core.reproduction.comparison import Reproduction

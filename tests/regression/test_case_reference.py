@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from pathlib import Path
 
-from tools import case_reference
+from tools.case_reference import case_reference
 
 
 def test_documentation_of_the_case_is_up_to_date() -> None:
