@@ -20,6 +20,7 @@ test-core: lint
 
 lint: $(VENV)/installed-for-tests
 	$(BIN)/ruff check .
+	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy
 
 soak: $(VENV)/installed-for-tests

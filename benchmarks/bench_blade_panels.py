@@ -12,8 +12,8 @@ import numpy as np
 from scipy.linalg import lu_factor
 
 from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
-from hpsop_core.hydro.blade_panels.hub_grid import hub_grid
 from hpsop_core.hydro.blade_panels.grid import blade_grid, helical_wake
+from hpsop_core.hydro.blade_panels.hub_grid import hub_grid
 from hpsop_core.hydro.blade_panels.potential import factorise
 from hpsop_core.hydro.blade_panels.solver import (
     WAKE_PITCH_COUNT,

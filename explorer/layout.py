@@ -6,8 +6,8 @@ from typing import Any
 
 import viser
 
-from explorer.server.guard import guard
 from explorer.server.bridge import Bridge, PageEvent
+from explorer.server.guard import guard
 from explorer.state.session import LEFT_DOCK, AppState, Session
 from explorer.views.chart_tabs import chart_tabs
 from explorer.views.charts_view import ChartsView

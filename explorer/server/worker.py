@@ -25,9 +25,7 @@ class LatestWorker:
         settle: seconds to wait before each task, in which newer ones may replace it.
     """
 
-    def __init__(
-        self, name: str, on_error: Callable[[BaseException], None] | None = None, settle: float = 0.0
-    ) -> None:
+    def __init__(self, name: str, on_error: Callable[[BaseException], None] | None = None, settle: float = 0.0) -> None:
         self._settle = settle
         self._tasks: OrderedDict[str, Callable[[], None]] = OrderedDict()
         self._condition = threading.Condition()

@@ -164,13 +164,9 @@ def case_from_toml(content: str, where: str, folder: Path | None = None) -> Case
     return _assembled(tables, values, where, stem, folder)
 
 
-def _assembled(
-    tables: Mapping[str, Any], texts: Mapping[str, Any], where: str, stem: str, folder: Path | None
-) -> Case:
+def _assembled(tables: Mapping[str, Any], texts: Mapping[str, Any], where: str, stem: str, folder: Path | None) -> Case:
     try:
-        sections = {
-            name: read_section(section, tables.get(name, {}), name) for name, section in SECTIONS.items()
-        }
+        sections = {name: read_section(section, tables.get(name, {}), name) for name, section in SECTIONS.items()}
         if folder is not None:
             sections["hull"] = _absolute(sections["hull"], "hull", ("offsets", "stl"), folder)
             sections["propeller"] = _absolute(sections["propeller"], "propeller", ("geometry",), folder)

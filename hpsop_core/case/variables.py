@@ -80,9 +80,9 @@ class DesignVariables:
         missing = [name for name in VARIABLE_NAMES if name not in values]
         if missing:
             raise InputError(f"{where}: '{missing[0]}' is missing; state all of {', '.join(VARIABLE_NAMES)}")
-        return cls(**{
-            name: checked_value(values[name], rule, f"{where}: {name}") for name, rule in VARIABLE_RULES.items()
-        })
+        return cls(
+            **{name: checked_value(values[name], rule, f"{where}: {name}") for name, rule in VARIABLE_RULES.items()}
+        )
 
     def replaced(self, changes: Mapping[str, object], where: str = "design variables") -> DesignVariables:
         """The same design with some variables changed; checked like ``from_dict``."""
@@ -154,9 +154,9 @@ class DesignSpace:
     @property
     def relaxed_upper(self) -> Array:
         """Upper bounds of the free vector, shape (free,); the relaxed blade count stays below its half."""
-        return np.array([
-            np.nextafter(self.upper[i] + 0.5, 0.0) if i == _BLADE_COUNT else self.upper[i] for i in self.free
-        ])
+        return np.array(
+            [np.nextafter(self.upper[i] + 0.5, 0.0) if i == _BLADE_COUNT else self.upper[i] for i in self.free]
+        )
 
     def decode(self, vector: Sequence[float] | Array) -> DesignVariables:
         """The design that a free vector, shape (free,), stands for; values beyond the bounds are clamped to them.

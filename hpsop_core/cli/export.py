@@ -47,9 +47,7 @@ def _export(arguments: argparse.Namespace) -> int:
     from hpsop_core.export.design_files import FORMATS, export_design
 
     formats = FORMATS if arguments.formats is None else [w.strip() for w in arguments.formats.split(",") if w.strip()]
-    files = export_design(
-        open_run(arguments.run), identifier(arguments.design), arguments.to, formats, arguments.force
-    )
+    files = export_design(open_run(arguments.run), identifier(arguments.design), arguments.to, formats, arguments.force)
     for file in files:
         print(_with_size(file))
     return 0

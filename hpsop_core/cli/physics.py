@@ -189,9 +189,7 @@ def _resistance(arguments: argparse.Namespace) -> int:
         case = dataclasses.replace(
             case, constants=dataclasses.replace(case.constants, density=density, viscosity=viscosity)
         )
-        points = list(
-            resistance_curve(case, variables, arguments.level, froude_numbers, form_factor=form_factor)
-        )
+        points = list(resistance_curve(case, variables, arguments.level, froude_numbers, form_factor=form_factor))
         hull = build_hull(hull_variables(case.hull, variables, initial_volume(case)))
     hydrostatics = hull.hydrostatics
     figures = {

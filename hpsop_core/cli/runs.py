@@ -291,9 +291,7 @@ def _summary_lines(run: RunReader) -> list[str]:
             record = run.design(summary[name])
             objectives = record.evaluation.objectives
             first, second = summary["objectives"]
-            lines.append(
-                f"{name}: design {record.id}, {first} {objectives['f1']:.4f}, {second} {objectives['f2']:.4f}"
-            )
+            lines.append(f"{name}: design {record.id}, {first} {objectives['f1']:.4f}, {second} {objectives['f2']:.4f}")
     started = summary["journal"][-5:]
     lines.extend(f"{entry['at']}  {entry['text']}" for entry in started)
     return lines

@@ -157,12 +157,14 @@ def reference_for(case: Case, level: int) -> Reference:
         delivered_power=(1.0,) * count,
     )
     conditions = _compute(case, case.initial.variables, level, start).conditions
-    return Reference(**{
-        **start.__dict__,
-        "total_resistance": tuple(condition.total_resistance for condition in conditions),
-        "efficiency": tuple(condition.open_water_efficiency for condition in conditions),
-        "delivered_power": tuple(condition.delivered_power for condition in conditions),
-    })
+    return Reference(
+        **{
+            **start.__dict__,
+            "total_resistance": tuple(condition.total_resistance for condition in conditions),
+            "efficiency": tuple(condition.open_water_efficiency for condition in conditions),
+            "delivered_power": tuple(condition.delivered_power for condition in conditions),
+        }
+    )
 
 
 def initial_volume(case: Case) -> float:
@@ -380,9 +382,7 @@ def _chord_07r(propeller: Propeller) -> float:
     return float(propeller.table.at(np.array(0.7)).chord_ratio) * propeller.diameter
 
 
-def _assess(
-    case: Case, variables: DesignVariables, level: int, basis: Reference, physics: _Physics
-) -> Evaluation:
+def _assess(case: Case, variables: DesignVariables, level: int, basis: Reference, physics: _Physics) -> Evaluation:
     hull, propeller, conditions = physics.hull, physics.propeller, physics.conditions
     clearance = propeller_clearance(hull, propeller)
     constraints = _constraints(case, level, variables, basis, physics, clearance)
@@ -474,9 +474,7 @@ def _constraints(
         cavitation_excess = first.required_expanded_area_ratio - physics.propeller.expanded_area_ratio
     return {
         "displacement": abs(physics.effective_volume / basis.displaced_volume - 1.0) - limits.displacement_tolerance,
-        "diameter_to_draft": max(
-            limits.diameter_to_draft_lower - ratio, ratio - limits.diameter_to_draft_upper
-        ),
+        "diameter_to_draft": max(limits.diameter_to_draft_lower - ratio, ratio - limits.diameter_to_draft_upper),
         "cavitation": cavitation_excess,
         "form": form,
         "propeller_clearance": -min(clearance, baseline_clearance(physics.hull, physics.propeller))

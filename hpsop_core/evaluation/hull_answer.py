@@ -147,9 +147,7 @@ def solve_waves(hull: Hull, level: int, froude_numbers: Sequence[float]) -> tupl
         # Froude numbers follow from a design's length at fixed speed: out of range is that design's failure.
         raise SolverFailure("rankine", str(problem)) from problem
     return tuple(
-        WaveAnswer(
-            point.wave_coefficient, point.wave_coefficient_pressure, point.sinkage, point.trim, result.warnings
-        )
+        WaveAnswer(point.wave_coefficient, point.wave_coefficient_pressure, point.sinkage, point.trim, result.warnings)
         for point in result.conditions
     )
 

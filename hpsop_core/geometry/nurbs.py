@@ -184,14 +184,10 @@ class NurbsSurface:
         finer = np.sort(np.concatenate([self.knots_u, knots]))
         count = len(finer) - degree - 1
         greville = np.array([np.mean(finer[k + 1 : k + degree + 1]) for k in range(count)])
-        insert = np.linalg.solve(
-            basis_matrix(finer, degree, greville), basis_matrix(self.knots_u, degree, greville)
-        )
+        insert = np.linalg.solve(basis_matrix(finer, degree, greville), basis_matrix(self.knots_u, degree, greville))
         weights = insert @ self.weights
         weighted = np.einsum("iu,uvk->ivk", insert, self.control_points * self.weights[..., None])
-        return NurbsSurface(
-            degree, self.degree_v, finer, self.knots_v, weighted / weights[..., None], weights
-        )
+        return NurbsSurface(degree, self.degree_v, finer, self.knots_v, weighted / weights[..., None], weights)
 
     def to_dict(self) -> dict[str, Any]:
         """Plain lists for JSON; equal weights are stored as one number."""
@@ -218,8 +214,12 @@ class NurbsSurface:
             if weights.ndim == 0:
                 weights = np.full(points.shape[:2], float(weights))
             return NurbsSurface(
-                int(data["degree_u"]), int(data["degree_v"]), np.array(data["knots_u"]), np.array(data["knots_v"]),
-                points, weights,
+                int(data["degree_u"]),
+                int(data["degree_v"]),
+                np.array(data["knots_u"]),
+                np.array(data["knots_v"]),
+                points,
+                weights,
             )
         except (KeyError, ValueError, TypeError) as problem:
             raise InputError(f"NURBS surface: unreadable ({problem})") from problem
@@ -243,6 +243,10 @@ class NurbsSurface:
         points = np.array(surface.ctrlpts, dtype=np.float64).reshape(*shape, 3)
         weights = np.array(surface.weights or np.ones(shape), dtype=np.float64).reshape(shape)
         return NurbsSurface(
-            surface.degree_u, surface.degree_v, np.array(surface.knotvector_u), np.array(surface.knotvector_v),
-            points, weights,
+            surface.degree_u,
+            surface.degree_v,
+            np.array(surface.knotvector_u),
+            np.array(surface.knotvector_v),
+            points,
+            weights,
         )

@@ -55,9 +55,9 @@ def wave_coefficients(
     # Everything in units of Lpp: with g = 1/Fn^2 and U = 1, k0 = 1/Fn^2.
     stations, depths = x / length, (z - z[-1]) / length
     slopes = np.diff(half_breadth, axis=0) / length
-    coefficients = np.array([
-        _wave_resistance(stations, depths, slopes, 1.0 / froude**2, largest_tangent) for froude in froude_numbers
-    ])
+    coefficients = np.array(
+        [_wave_resistance(stations, depths, slopes, 1.0 / froude**2, largest_tangent) for froude in froude_numbers]
+    )
     result: Array = coefficients * length**2 / wetted_surface
     if not np.all(np.isfinite(result)):
         raise SolverFailure("michell", "the wave integral is not finite; check the table of half-breadths")
@@ -74,9 +74,7 @@ def _wave_resistance(stations: Array, depths: Array, rises: Array, wave_number: 
     return float(8.0 * wave_number**2 / np.pi * integral)
 
 
-def amplitude(
-    stations: Array, depths: Array, rises: Array, wave_number: float, tangents: Array
-) -> tuple[Array, Array]:
+def amplitude(stations: Array, depths: Array, rises: Array, wave_number: float, tangents: Array) -> tuple[Array, Array]:
     """Real and imaginary part of F(u) in units of Lpp, each of shape (tangents,).
 
     Args:

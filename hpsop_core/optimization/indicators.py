@@ -56,9 +56,7 @@ class FrontArchive:
         return list(zip(self._first, self._second, strict=True))
 
 
-def hypervolume(
-    front: Sequence[tuple[float, float]], reference_point: tuple[float, float] = REFERENCE_POINT
-) -> float:
+def hypervolume(front: Sequence[tuple[float, float]], reference_point: tuple[float, float] = REFERENCE_POINT) -> float:
     """The area that a front dominates below the reference point; exact for two objectives.
 
     Args:

@@ -231,9 +231,7 @@ def resistance_chart(
         return figure
 
 
-def thrust_chart(
-    designs: Sequence[tuple[Look, ThrustCurves, Evaluation]], paper: Sequence[PaperPoints] = ()
-) -> Figure:
+def thrust_chart(designs: Sequence[tuple[Look, ThrustCurves, Evaluation]], paper: Sequence[PaperPoints] = ()) -> Figure:
     """Thrust that the hull asks for, and that the propeller gives at each condition's rate of rotation."""
     with drawing(SIZE[0], 3.9) as figure:
         axes: Any = figure.add_subplot()
@@ -243,9 +241,7 @@ def thrust_chart(
                 *through(curves.froude_number, 1e-6 * curves.required), look.line, color=look.colour,
                 label=f"required $R_T/(1-t)$, {look.name}",
             )  # fmt: skip
-            for number, (condition, available) in enumerate(
-                zip(evaluation.conditions, curves.available, strict=True)
-            ):
+            for number, (condition, available) in enumerate(zip(evaluation.conditions, curves.available, strict=True)):
                 label = f"available at {condition.rotation_rate_rpm:.0f} 1/min"
                 shape = (":", "-.", (0, (1, 3)), (0, (5, 1, 1, 1)))[number]
                 axes.plot(

@@ -118,7 +118,7 @@ def table(
 
     def cells(tag: str, row: Sequence[str]) -> str:
         return "".join(
-            f'<{tag}{" class=words" if index in words else ""}>{cell}</{tag}>' for index, cell in enumerate(row)
+            f"<{tag}{' class=words' if index in words else ''}>{cell}</{tag}>" for index, cell in enumerate(row)
         )
 
     body = []
@@ -180,7 +180,7 @@ def page(title: str, head: str, sections: Sequence[Section], footer: str) -> str
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         # Not even a slip can fetch something.
-        '<meta http-equiv="Content-Security-Policy" content="default-src \'none\'; style-src \'unsafe-inline\'; '
+        "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
         'img-src data:">\n'
         f"<title>{text(title)}</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n<header><h1>{text(title)}</h1>\n"
         f"{head}</header>\n<nav>{links}</nav>\n{body}\n<footer>{text(footer)}</footer>\n</body>\n</html>\n"

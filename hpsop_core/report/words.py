@@ -98,7 +98,7 @@ def _design_space(case: Case) -> str:
         lower, upper = case.bounds.as_dict()[quantity.key]
         scale = 100.0 if quantity.unit == "%" else 1.0
         numbers = [number_text(scale * value, quantity.decimals) for value in (initial[quantity.key], lower, upper)]
-        unit = f' <span class=unit>[{text(quantity.unit or "–")}]</span>'
+        unit = f" <span class=unit>[{text(quantity.unit or '–')}]</span>"
         spread = numbers[1:] if lower < upper else [numbers[1], "fixed"]
         rows.append([f"{text(quantity.label)} {symbol(quantity.symbol)}{unit}", numbers[0], *spread])
     return table(["variable", "initial design", "lower bound", "upper bound"], rows, caption="Design space")

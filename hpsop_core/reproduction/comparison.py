@@ -50,9 +50,7 @@ class Table:
         writer = csv.writer(stream, lineterminator="\n")
         writer.writerow(self.header)
         for row in self.rows:
-            writer.writerow(
-                "" if cell is None else f"{cell:.9g}" if isinstance(cell, float) else cell for cell in row
-            )
+            writer.writerow("" if cell is None else f"{cell:.9g}" if isinstance(cell, float) else cell for cell in row)
         return stream.getvalue()
 
 
@@ -63,9 +61,7 @@ def checked_run(run: RunReader) -> RunReader:
         InputError: it is a run of another case.
     """
     own, stored = load_case(CASE_NAME), run.case.optimization
-    settings = {
-        name: getattr(stored, name) for name in ("population", "generations", "level1_generations", "seed")
-    }
+    settings = {name: getattr(stored, name) for name in ("population", "generations", "level1_generations", "seed")}
     if own.replaced("optimization", **settings) != run.case:
         raise InputError(
             f"{run.path}: holds a run of the case '{run.case.name}', not of '{CASE_NAME}' as it is shipped; "
@@ -209,8 +205,16 @@ def table3(data: Reproduction) -> Table:
             words = f"{name} (compromise)"
         rows.append(
             (
-                f"ours {words}", v.length, v.breadth, v.draft, booked, v.blade_count, v.diameter, v.pitch_ratio,
-                e.objectives["f1"], e.objectives["f2"],
+                f"ours {words}",
+                v.length,
+                v.breadth,
+                v.draft,
+                booked,
+                v.blade_count,
+                v.diameter,
+                v.pitch_ratio,
+                e.objectives["f1"],
+                e.objectives["f2"],
             )
         )
     return Table(
@@ -296,8 +300,15 @@ def propellers(data: Reproduction) -> Table:
         j = point.advance_coefficient
         rows.append(
             (
-                point.design.name, j, "paper", point.thrust_coefficient, point.ten_torque_coefficient,
-                point.open_water_efficiency, None, None, None,
+                point.design.name,
+                j,
+                "paper",
+                point.thrust_coefficient,
+                point.ten_torque_coefficient,
+                point.open_water_efficiency,
+                None,
+                None,
+                None,
             )
         )
         for level in (1, 2):
@@ -311,7 +322,15 @@ def propellers(data: Reproduction) -> Table:
         "Open water at the paper's advance coefficients: the paper's Table 4 and our propeller of the same Z, D\n"
         "and pitch multiplier, EAR kept at 0.607, full scale.",
         (
-            "design", "J [-]", "source", "KT [-]", "10KQ [-]", "eta [-]", "KT off [%]", "10KQ off [%]", "eta off [%]",
+            "design",
+            "J [-]",
+            "source",
+            "KT [-]",
+            "10KQ [-]",
+            "eta [-]",
+            "KT off [%]",
+            "10KQ off [%]",
+            "eta off [%]",
         ),
         tuple(rows),
     )
@@ -344,8 +363,19 @@ def audit(data: Reproduction) -> Table:
         "table4_audit",
         f"What the paper's Table 4 implies with rho {density:g} kg/m3, g {paper.PAPER_GRAVITY:g} m/s2, Keller's K = 0.",
         (
-            "design", "Fn [-]", "V [m/s]", "w implied [-]", "w of Taylor's table [-]", "eta recomputed [-]",
-            "eta printed [-]", "T [kN]", "Rt [kN]", "T/Rt [-]", "t implied [-]", "PD [MW]", "PE = Rt V [MW]",
+            "design",
+            "Fn [-]",
+            "V [m/s]",
+            "w implied [-]",
+            "w of Taylor's table [-]",
+            "eta recomputed [-]",
+            "eta printed [-]",
+            "T [kN]",
+            "Rt [kN]",
+            "T/Rt [-]",
+            "t implied [-]",
+            "PD [MW]",
+            "PE = Rt V [MW]",
             "EAR by Keller [-]",
         ),
         rows,
@@ -394,8 +424,14 @@ def resistance_audit(data: Reproduction) -> Table:
         "Total resistance, and the wave coefficient on 1/2 rho V^2 S; the paper's is what its Rt leaves after ITTC-57\n"
         "friction. In the tank the DTC has Cw 3.36e-4 at Fn 0.218 (assets/reference/dtc_resistance.csv).",
         (
-            "design", "Fn [-]", "Rt paper [kN]", "10^4 Cw paper [-]", "Rt level 1 [kN]", "10^4 Cw level 1 [-]",
-            "Rt level 2 [kN]", "10^4 Cw level 2 [-]",
+            "design",
+            "Fn [-]",
+            "Rt paper [kN]",
+            "10^4 Cw paper [-]",
+            "Rt level 1 [kN]",
+            "10^4 Cw level 1 [-]",
+            "Rt level 2 [kN]",
+            "10^4 Cw level 2 [-]",
         ),
         tuple(rows),
     )

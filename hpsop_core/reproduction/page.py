@@ -105,8 +105,7 @@ def _verdict(data: Reproduction, by_name: dict[str, Table]) -> str:
     wake = sorted({round(value, 4) for value in _column(audit, "w implied [-]")})
     taylor = sorted({round(value, 4) for value in _column(audit, "w of Taylor's table [-]")})
     efficiency = max(
-        abs(a - b)
-        for a, b in zip(_column(audit, "eta recomputed [-]"), _column(audit, "eta printed [-]"), strict=True)
+        abs(a - b) for a, b in zip(_column(audit, "eta recomputed [-]"), _column(audit, "eta printed [-]"), strict=True)
     )
     first = paper.table4()[0]
     absolute = thrust_with_absolute_pitch(data, first)

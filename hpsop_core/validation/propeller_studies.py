@@ -96,9 +96,7 @@ def grid_convergence() -> Rows:
     for chordwise, radial in GRIDS:
         hub = HubSettings(5, 6, 36) if chordwise >= 60 else HubSettings()
         start = time.process_time()
-        result = solve(
-            model_propeller(), [0.5, 0.833], MODEL_SCALE, BladePanelSettings(chordwise, radial, hub=hub)
-        )
+        result = solve(model_propeller(), [0.5, 0.833], MODEL_SCALE, BladePanelSettings(chordwise, radial, hub=hub))
         elapsed = time.process_time() - start
         pressure = forces_of(result, "pressure")
         cells = [f"{chordwise} x {radial}", str(result.model.onset_points.shape[0])]

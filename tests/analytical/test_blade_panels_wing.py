@@ -34,9 +34,7 @@ def elliptic_wing(aspect_ratio: float, chordwise: int, strips: int, incidence: f
     body = factorise(surface, 1, onset)
     distance = root * np.array([0.0, 1.0, 2.0, 4.0, 8.0, 16.0, 64.0, 400.0])
     wake = corners[0][None] + distance[:, None, None] * [1.0, 0.0, 0.0]
-    potential = body.wake_potential(
-        panel_set(grid_quadrilaterals(wake)), np.tile(np.arange(strips), distance.size - 1)
-    )
+    potential = body.wake_potential(panel_set(grid_quadrilaterals(wake)), np.tile(np.arange(strips), distance.size - 1))
     ends = np.zeros(strips, dtype=np.bool_)
     ends[[0, -1]] = True
     kutta = KuttaProblem.of(body, np.ones(strips), ends)

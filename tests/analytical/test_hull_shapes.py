@@ -56,6 +56,7 @@ def test_ellipsoid_closes_between_stations(tmp_path: Path) -> None:
 
 def test_immersed_transom_gives_the_centre_up(tmp_path: Path) -> None:
     """The aft body is prismatic up to its transom: it has no volume to give, so the centre cannot be held."""
+
     def half_breadth(x: float, z: float) -> float:
         along = x / LENGTH
         keel = 2.5 * max(0.0, (along - 0.75) / 0.25) ** 2
@@ -80,6 +81,7 @@ def test_cruiser_stern_above_a_post(tmp_path: Path) -> None:
 
     One patch through both would swing metres above the water between the stations; the post has to be an edge.
     """
+
     def half_breadth(x: float, z: float) -> float:
         aft = -2.0 * max(0.0, z - 3.0)  # the profile leaves the post at z = 3 m and passes the draft, 4 m, at x = -2 m
         part = (x - 30.0) / (30.0 if x >= 30.0 else 30.0 - aft)
@@ -107,6 +109,7 @@ def test_cruiser_stern_above_a_post(tmp_path: Path) -> None:
 
 def test_pram_ends_where_its_run_leaves_the_water(tmp_path: Path) -> None:
     """A straight run that passes the draft at x = 0, between two waterlines of the table and two of its stations."""
+
     def half_breadth(x: float, z: float) -> float:
         run = max(0.0, 3.0 - 0.15 * x) if x < 30.0 else 0.0
         beam = 6.0 * (1.0 - max(0.0, (x - 30.0) / 30.0) ** 2)
@@ -121,6 +124,7 @@ def test_pram_ends_where_its_run_leaves_the_water(tmp_path: Path) -> None:
 
 def test_draft_between_waterlines(tmp_path: Path) -> None:
     """A wedge-sided prism with pointed ends: volume to any draft in closed form."""
+
     def half_breadth(x: float, z: float) -> float:
         return (3.0 + z) * (1.0 - (2.0 * x / LENGTH - 1.0) ** 2)
 

@@ -50,7 +50,7 @@ def test_centre_of_buoyancy_alone(parent: ParentHull, fraction: float) -> None:
 def test_centre_shift_in_metres_of_the_new_ship(parent: ParentHull) -> None:
     scaled = parent.transform(300.0, 45.0, 13.0)
     moved = parent.transform(300.0, 45.0, 13.0, None, 2.4)
-    shift = (moved.hydrostatics.longitudinal_centre_of_buoyancy - scaled.hydrostatics.longitudinal_centre_of_buoyancy)
+    shift = moved.hydrostatics.longitudinal_centre_of_buoyancy - scaled.hydrostatics.longitudinal_centre_of_buoyancy
     assert shift == pytest.approx(2.4, abs=1e-6)
 
 

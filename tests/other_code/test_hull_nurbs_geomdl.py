@@ -86,7 +86,9 @@ def test_inverse_of_a_rising_spline() -> None:
 @pytest.mark.parametrize("change", [{"weights": -np.ones((6, 5))}, {"knots_u": np.linspace(0, 1, 10)}, {"degree_v": 3}])
 def test_what_is_no_surface_is_refused(change: dict[str, object]) -> None:
     surface = rational_surface()
-    data = {name: getattr(surface, name) for name in
-            ("degree_u", "degree_v", "knots_u", "knots_v", "control_points", "weights")} | change
+    data = {
+        name: getattr(surface, name)
+        for name in ("degree_u", "degree_v", "knots_u", "knots_v", "control_points", "weights")
+    } | change
     with pytest.raises(InputError):
         NurbsSurface(**data)  # type: ignore[arg-type]

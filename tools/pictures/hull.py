@@ -1,6 +1,6 @@
 """Pictures of the hull family for the documentation.
 
-    python -m tools.pictures.hull --to docs/pictures
+python -m tools.pictures.hull --to docs/pictures
 """
 
 from __future__ import annotations

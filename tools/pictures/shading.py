@@ -74,9 +74,13 @@ def render(
     light /= np.linalg.norm(light)
     for part, seen in zip(parts, placed, strict=True):
         brightness = 0.35 + 0.65 * np.clip(vertex_normals(part.vertices, part.faces) @ light, 0.0, 1.0)
-        pixel = np.column_stack([
-            0.5 * width + scale * (seen[:, 0] - centre[0]), 0.5 * height - scale * (seen[:, 1] - centre[1]), seen[:, 2],
-        ])
+        pixel = np.column_stack(
+            [
+                0.5 * width + scale * (seen[:, 0] - centre[0]),
+                0.5 * height - scale * (seen[:, 1] - centre[1]),
+                seen[:, 2],
+            ]
+        )
         colour = np.array(part.colour)
         for a, b, c in part.faces:
             _fill(image, depth, pixel[[a, b, c]], brightness[[a, b, c]], colour)

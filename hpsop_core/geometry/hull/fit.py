@@ -172,6 +172,7 @@ def _row_kronecker(left: Array, right: Array) -> sparse.csr_matrix:
 
 def _roughness(nu: int, nv: int) -> sparse.csr_matrix:
     """Second differences of the control net in both directions."""
+
     def second(n: int) -> sparse.csr_matrix:
         return sparse.diags([1.0, -2.0, 1.0], [0, 1, 2], shape=(n - 2, n), format="csr")
 

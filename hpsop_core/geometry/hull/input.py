@@ -119,10 +119,9 @@ def _grid(name: str, rows: list[tuple[int, float, float, float]]) -> tuple[Array
     return np.array([block[0][1] for block in blocks]), np.array(heights), y, begins
 
 
-def _check_size(
-    name: str, x: Array, z: Array, y: Array, length: float, draft: float, where: dict[float, int]
-) -> None:
+def _check_size(name: str, x: Array, z: Array, y: Array, length: float, draft: float, where: dict[float, int]) -> None:
     """Lengths that cannot belong together: units, draft, length."""
+
     def row_of(k: int) -> str:
         return f" row {where[float(x[k])]}" if float(x[k]) in where else ""
 

@@ -97,16 +97,16 @@ def circulation_forces(strips: StripData, circulation: Array, flow: LocalFlow) -
     return thrust / 16.0, torque / 32.0
 
 
-def drag_forces(
-    strips: StripData, flow: LocalFlow, advance: float, drag: SectionDrag
-) -> tuple[float, float]:
+def drag_forces(strips: StripData, flow: LocalFlow, advance: float, drag: SectionDrag) -> tuple[float, float]:
     """What section drag adds to (KT, KQ)."""
     if not drag.viscous:
         return 0.0, 0.0
     speed = flow.speed
     excess = 2.0 * np.pi * (strips.pitch_angle - np.arctan2(flow.axial, flow.tangential) - strips.ideal_angle)
     ideal = drag.ideal_coefficient(
-        strips.diameter, 0.5 * strips.chord, strips.thickness_ratio,
+        strips.diameter,
+        0.5 * strips.chord,
+        strips.thickness_ratio,
         np.sqrt((0.5 * advance) ** 2 + (np.pi * strips.radius) ** 2),
     )
     coefficient = drag.coefficient(ideal, excess)
