@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 from numpy.typing import NDArray
 
-from explorer.charts.plot import escape, symbol_html
 from explorer.state.run_picture import RunPicture
+from hpsop_core.markup import escape, symbol_html
 from hpsop_core.quantities import OBJECTIVES, VARIABLES, all_quantities
 
 _RESULTS = ("block_coefficient", "total_resistance_1", "open_water_efficiency_1", "delivered_power_1", "g3")

@@ -7,8 +7,8 @@ from collections.abc import Mapping
 import numpy as np
 from numpy.typing import NDArray
 
-from explorer.charts.plot import escape, symbol_svg
 from explorer.state.run_picture import RunPicture
+from hpsop_core.markup import escape, symbol_svg
 from hpsop_core.quantities import OBJECTIVES, VARIABLES, Quantity, all_quantities, number_text
 
 _MOST_LINES = 350

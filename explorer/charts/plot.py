@@ -6,16 +6,16 @@ Colours come from CSS classes (assets/page.css), so that a chart follows the lig
 from __future__ import annotations
 
 import copy
-import html
 import itertools
 import math
-import re
 from collections.abc import Iterable, Sequence
 from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import ArrayLike, NDArray
 from scipy.interpolate import PchipInterpolator
+
+from hpsop_core.markup import escape, symbol_html, symbol_plain, symbol_svg
 
 _CROWD = 1500
 Limits = tuple[float, float]
@@ -67,42 +67,6 @@ def padded(values: ArrayLike, fraction: float = 0.06, include: Iterable[float] =
     if span <= 1e-12 * max(abs(high), 1.0):
         span = max(abs(high), 1e-3) * 0.1
     return (low - fraction * span, high + fraction * span)
-
-
-def escape(text: str) -> str:
-    """Text made safe inside HTML and attributes."""
-    return html.escape(text, quote=True)
-
-
-def _symbol_parts(text: str) -> list[tuple[str, str]]:
-    """("R", "T1"), (" [kN]", "") from "R_T1 [kN]": an underscore makes a subscript of what follows, up to a blank."""
-    pieces = re.split(r"_([^\s,;:)\]]+)", text)
-    return list(zip(pieces[::2], [*pieces[1::2], ""], strict=True))
-
-
-def symbol_html(text: str) -> str:
-    """A quantity's symbol with its subscripts, for tables."""
-    return "".join(
-        escape(base) + (f"<sub>{escape(below)}</sub>" if below else "") for base, below in _symbol_parts(text)
-    )
-
-
-def symbol_svg(text: str) -> str:
-    """The same inside an SVG text."""
-    drawn, lowered = [], False
-    for base, below in _symbol_parts(text):
-        if base:
-            drawn.append(f'<tspan dy="-3">{escape(base)}</tspan>' if lowered else escape(base))
-            lowered = False
-        if below:
-            drawn.append(f'<tspan class="sub" dy="3">{escape(below)}</tspan>')
-            lowered = True
-    return "".join(drawn)
-
-
-def symbol_plain(text: str) -> str:
-    """The same for a tooltip, which cannot have any."""
-    return text.replace("_", "")
 
 
 def smooth(x: ArrayLike, y: ArrayLike, count: int = 160) -> tuple[Array, Array]:

@@ -16,10 +16,10 @@ from explorer.charts.curves import (
 )
 from explorer.charts.drivers import drivers_table
 from explorer.charts.parallel import parallel_chart
-from explorer.charts.plot import escape
 from explorer.state.session import Session
 from explorer.views.charts_view import ChartTab, on_display
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.markup import escape
 from hpsop_core.quantities import VARIABLES, all_quantities
 
 

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from explorer.charts.plot import escape
+from hpsop_core.markup import escape
 
 
 def chip(

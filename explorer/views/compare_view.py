@@ -4,12 +4,12 @@ from __future__ import annotations
 
 import viser
 
-from explorer.charts.plot import escape
 from explorer.server.bridge import PageEvent
 from explorer.state.session import Session
 from explorer.views.chips import box, chip, chips
 from explorer.views.slot import Slot
 from explorer.views.tables import many_table
+from hpsop_core.markup import escape
 
 
 class CompareView:

@@ -6,10 +6,10 @@ import time
 
 import viser
 
-from explorer.charts.plot import escape
 from explorer.state.session import AppState
 from explorer.views.chips import box, chip, chips
 from explorer.views.slot import Slot
+from hpsop_core.markup import escape
 
 
 class LibraryView:

@@ -4,11 +4,11 @@ from __future__ import annotations
 
 import viser
 
-from explorer.charts.plot import escape
 from explorer.state.run_picture import ACTIVE, FAILED, FINISHED, IDLE, PAUSED, RUNNING, STARTING, STOPPED, STOPPING
 from explorer.state.session import AppState
 from explorer.views.chips import box, chip, chips
 from explorer.views.slot import Slot
+from hpsop_core.markup import escape
 from hpsop_core.quantities import number_text
 
 _WORDS = {

@@ -10,7 +10,6 @@ from typing import Any
 
 import viser
 
-from explorer.charts.plot import escape
 from explorer.state.draft import numbers_from_text
 from explorer.state.session import AppState
 from explorer.views.chips import box, chip, chips
@@ -19,6 +18,7 @@ from hpsop_core.case.case import SHIPPED_CASES, load_case
 from hpsop_core.case.fields import checked_value, rules
 from hpsop_core.case.variables import VARIABLE_RULES
 from hpsop_core.errors import InputError
+from hpsop_core.markup import escape, joined
 from hpsop_core.quantities import VARIABLES, Quantity, number_text
 
 # A field is typed digit by digit; what cannot be taken is refused when the typing has rested so long.
@@ -271,7 +271,7 @@ class SettingsView:
     def draw(self) -> None:
         """Readouts, marks of change, and the preset's two lines."""
         draft = self._app.draft
-        lines = escape(draft.base.description.strip()).replace("\n", "<br>")
+        lines = joined(draft.base.description.strip().split("\n"), "<br>")
         try:
             draft.case()
             trouble = ""

@@ -4,8 +4,8 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from explorer.charts.plot import escape, symbol_html
 from explorer.state.session import Shown
+from hpsop_core.markup import escape, symbol_html
 from hpsop_core.quantities import (
     CONSTRAINTS,
     HULL,

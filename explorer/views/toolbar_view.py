@@ -8,7 +8,6 @@ from typing import Any
 import viser
 from PIL import Image
 
-from explorer.charts.plot import escape
 from explorer.scene.camera import PRESETS, TITLES
 from explorer.server.bridge import PageEvent, overlay
 from explorer.state.session import Session, Shown
@@ -17,6 +16,7 @@ from explorer.views.slot import Slot
 from explorer.views.tables import headline
 from hpsop_core.errors import HpsopError
 from hpsop_core.export.design_files import zip_design
+from hpsop_core.markup import escape
 from hpsop_core.quantities import number_text
 
 _SWITCHES = (

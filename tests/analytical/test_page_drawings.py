@@ -13,7 +13,7 @@ from scipy.stats import spearmanr
 from explorer.charts.curves import Series, open_water_chart
 from explorer.charts.drivers import rank_correlation
 from explorer.charts.pareto import _count_coincident
-from explorer.charts.plot import Plot, smooth, symbol_html, symbol_svg, tick_texts, ticks
+from explorer.charts.plot import Plot, smooth, tick_texts, ticks
 from explorer.scene.camera import PRESETS, preset
 from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, ramp
 from explorer.scene.transfer import transferred
@@ -103,14 +103,6 @@ def test_smooth_keeps_the_points_and_never_overshoots():
     assert np.abs(np.interp(x, fine, values) - y).max() < 1e-12
     assert values.min() >= 0.0
     assert np.diff(values).min() >= -1e-12
-
-
-def test_symbols_are_set_with_their_subscripts():
-    assert symbol_html("R_T1 [kN]") == "R<sub>T1</sub> [kN]"
-    assert symbol_html("K_T, 10K_Q") == "K<sub>T</sub>, 10K<sub>Q</sub>"
-    assert symbol_html("<b>") == "&lt;b&gt;"
-    # after a subscript the pen returns to the line
-    assert symbol_svg("C_B [–]") == 'C<tspan class="sub" dy="3">B</tspan><tspan dy="-3"> [–]</tspan>'
 
 
 def test_ticks_have_no_more_decimals_than_their_distance():
