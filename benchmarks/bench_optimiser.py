@@ -16,7 +16,8 @@ import numpy as np
 
 from hpsop_core.case.case import load_case
 from hpsop_core.case.variables import DesignVariables
-from hpsop_core.evaluation.evaluate import evaluate, reference_for
+from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.reference import reference_for
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.optimization.nsga2 import Nsga2, Operators
 from hpsop_core.optimization.problem import Candidate, Outcome

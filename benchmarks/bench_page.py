@@ -77,7 +77,8 @@ def serve(folder: Path, port: int) -> None:
     """The page on the recommended case, whose Start streams."""
     from explorer.app import Explorer
     from explorer.state.session import run_keeper
-    from hpsop_core.evaluation.evaluate import Reference, evaluate, reference_for
+    from hpsop_core.evaluation.evaluate import evaluate
+    from hpsop_core.evaluation.reference import Reference, reference_for
     from hpsop_core.runs.tasks import Physics
 
     case = load_case("dtc-p4119")

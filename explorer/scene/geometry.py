@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from explorer.charts.curves import HullLines
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
-from hpsop_core.evaluation.evaluate import design_hull, design_propeller
+from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.geometry.clearance import propeller_plane_x
 from hpsop_core.geometry.hull.mesh import hull_view_parts
 from hpsop_core.geometry.propeller.mesh import propeller_view_parts

@@ -17,8 +17,11 @@ from explorer.charts.curves import DesignCurves, HullLines
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import SolverFailure
-from hpsop_core.evaluation.evaluate import Reference, design_hull, evaluate, reference_for, resistance_curve
+from hpsop_core.evaluation.curves import resistance_curve
+from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.shapes import design_hull
 
 Value = TypeVar("Value")
 # The classic twenty, halved towards the ends where the form changes fast, and the bulb ahead of FP.

@@ -24,8 +24,8 @@ from explorer.state.session import AppState
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
-from hpsop_core.evaluation.evaluate import design_hull, design_propeller
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.runs.executor import default_workers
 
 _PICTURE_SECONDS = 0.25

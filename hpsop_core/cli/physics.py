@@ -156,8 +156,9 @@ def _water(word: str | None, default: tuple[float, float]) -> tuple[float, float
 
 def _resistance(arguments: argparse.Namespace) -> int:
     from hpsop_core.case.sections import ConstantsSection
-    from hpsop_core.evaluation.evaluate import initial_volume, resistance_curve
+    from hpsop_core.evaluation.curves import resistance_curve
     from hpsop_core.evaluation.hull_answer import build_hull, hull_variables, parent_hull, resistance_point, solve_waves
+    from hpsop_core.evaluation.shapes import initial_volume
 
     froude_numbers = number_list(arguments.froude, FROUDE_RULE, "--froude")
     form_factor = checked_option(arguments.form_factor, FieldRule("number", "", "", 0.0, 1.0), "--form-factor")
@@ -225,8 +226,8 @@ def _resistance(arguments: argparse.Namespace) -> int:
 def _open_water(arguments: argparse.Namespace) -> int:
     import numpy as np
 
-    from hpsop_core.evaluation.evaluate import design_propeller
     from hpsop_core.evaluation.propeller_answer import solve_open_water
+    from hpsop_core.evaluation.shapes import design_propeller
     from hpsop_core.geometry.propeller.propeller import propeller_family, radial_table_from_csv
     from hpsop_core.hydro.open_water import SectionDrag, reynolds_number_07R
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
 
 import numpy as np
@@ -10,17 +11,69 @@ from scipy.interpolate import CubicSpline, PchipInterpolator
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import SolverFailure
-from hpsop_core.evaluation.evaluate import Reference, design_hull, resistance_curve
-from hpsop_core.evaluation.hull_answer import ResistancePoint
+from hpsop_core.evaluation.hull_answer import (
+    ResistancePoint,
+    build_hull,
+    hull_variables,
+    resistance_point,
+    wave_answers,
+)
+from hpsop_core.evaluation.physics import basis_for
+from hpsop_core.evaluation.reference import Reference
 from hpsop_core.evaluation.result import Evaluation, OpenWaterCurve
+from hpsop_core.evaluation.shapes import design_hull
+from hpsop_core.hydro.operating_point import PropellerCurve
 from hpsop_core.typing_aliases import Array
 
 FROUDE_MARGIN = 0.05
 """Resistance curves reach this far beyond the conditions' Froude numbers, within 0.1 to 0.5."""
 
+CURVE_STEP = 0.05
+"""Steps of the advance coefficient in an evaluation's open-water curve."""
+
 _FROUDE_STEP = 0.01
 # The classic twenty, denser towards the ends where the form changes fast, and the bulb ahead of FP.
 _STATIONS = np.array([-0.2, 0.0, 0.5, 1.0, 1.5, *range(2, 19), 18.5, 19.0, 19.5, 20.0, 20.2])
+
+
+def resistance_curve(
+    case: Case,
+    variables: DesignVariables,
+    level: int,
+    froude_numbers: tuple[float, ...],
+    reference: Reference | None = None,
+    form_factor: float | None = None,
+) -> tuple[ResistancePoint, ...]:
+    """Resistance of a design at any Froude numbers (on its own length), calibrated as in its evaluation.
+
+    Args:
+        case: what is optimised.
+        variables: the design.
+        level: 1 or 2.
+        froude_numbers: at which to compute.
+        reference: of this level; only its V0 and calibration are used.
+        form_factor: k; the case's by default.
+
+    Raises:
+        SolverFailure: the form or its waves cannot be computed.
+    """
+    basis = basis_for(case, level) if reference is None else reference.basis
+    key = hull_variables(case.hull, variables, basis.displaced_volume)
+    waves = wave_answers(key, level, tuple(froude_numbers))
+    constants = case.constants
+    return tuple(
+        resistance_point(
+            build_hull(key),
+            wave,
+            froude,
+            gravity=constants.gravity,
+            density=constants.density,
+            viscosity=constants.viscosity,
+            form_factor=constants.form_factor if form_factor is None else form_factor,
+            wave_calibration=basis.calibration_at(froude),
+        )
+        for froude, wave in zip(froude_numbers, waves, strict=True)
+    )
 
 
 def froude_range(evaluation: Evaluation, above: float = FROUDE_MARGIN) -> tuple[float, ...]:
@@ -87,6 +140,16 @@ def thrust_curves(case: Case, evaluation: Evaluation, points: tuple[ResistancePo
         required=total / (1.0 - evaluation.conditions[0].thrust_deduction),
         available=tuple(available),
     )
+
+
+def open_water_curve(curve: PropellerCurve) -> OpenWaterCurve:
+    """A propeller's curve in steps of ``CURVE_STEP`` of the advance coefficient."""
+    lower, upper = curve.range
+    advance = np.arange(lower, upper + 0.5 * CURVE_STEP, CURVE_STEP)
+    thrust, torque = curve.coefficients(advance)
+    # Beyond zero thrust the quotient of two small numbers means nothing: no useful work is done there.
+    efficiency = np.where(thrust > 0.0, advance * thrust / (2.0 * math.pi * torque), 0.0)
+    return OpenWaterCurve(*(tuple(float(value) for value in row) for row in (advance, thrust, torque, efficiency)))
 
 
 def through(x: Array, y: Array, count: int = 200) -> tuple[Array, Array]:

@@ -14,8 +14,9 @@ from typing import Any
 from hpsop_core import __version__
 from hpsop_core.case.case import Case
 from hpsop_core.errors import InputError
-from hpsop_core.evaluation.evaluate import Reference, design_hull, design_propeller, reference_for
+from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.export import tables
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.propeller.propeller import Propeller

@@ -8,7 +8,7 @@ import numpy as np
 
 from hpsop_core.case.case import Case
 from hpsop_core.evaluation.curves import resistance_points
-from hpsop_core.evaluation.evaluate import Reference
+from hpsop_core.evaluation.reference import Reference
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.export.offsets import offsets_csv
 from hpsop_core.geometry.hull.hull import Hull

@@ -15,8 +15,8 @@ from hpsop_core import __version__
 from hpsop_core.case.case import Case
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.curves import hull_lines, resistance_points, thrust_curves
-from hpsop_core.evaluation.evaluate import Reference, reference_for
 from hpsop_core.evaluation.hull_answer import ResistancePoint
+from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.quantities import change_text, number_text, objective_title

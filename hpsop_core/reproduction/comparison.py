@@ -10,9 +10,11 @@ from dataclasses import dataclass
 
 from hpsop_core.case.case import Case, load_case
 from hpsop_core.errors import InputError
-from hpsop_core.evaluation.evaluate import Reference, evaluate, initial_volume, reference_for
+from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.propeller_answer import build_propeller, propeller_answer, propeller_variables
+from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.shapes import initial_volume
 from hpsop_core.hydro import cavitation
 from hpsop_core.hydro.friction import ittc57_coefficient
 from hpsop_core.reproduction import paper

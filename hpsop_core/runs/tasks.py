@@ -51,7 +51,8 @@ class Physics:
 def hydrodynamics() -> Physics:
     """The real thing."""
     # Imported here: this module is also the workers' first import, and tests bring their own physics.
-    from hpsop_core.evaluation.evaluate import Reference, evaluate, reference_for
+    from hpsop_core.evaluation.evaluate import evaluate
+    from hpsop_core.evaluation.reference import Reference, reference_for
 
     return Physics(evaluate, reference_for, Reference.from_dict)
 

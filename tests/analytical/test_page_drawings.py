@@ -22,8 +22,8 @@ from explorer.services.physics import Physics
 from explorer.state.session import Shown
 from explorer.views.tables import many_table
 from hpsop_core.case.case import Case, load_case
-from hpsop_core.evaluation.evaluate import design_hull
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.hydro.michell import wave_coefficients
 from hpsop_core.quantities import change_text, number_text
 

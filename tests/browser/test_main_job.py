@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 from conftest import front_marks, press, session_of, wait_until
 
-from hpsop_core.evaluation.evaluate import design_hull, design_propeller
+from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.geometry.hull.mesh import hull_view_parts
 
 

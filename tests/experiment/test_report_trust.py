@@ -8,8 +8,8 @@ import pytest
 
 from hpsop_core import load_case
 from hpsop_core.assets import read_asset_text
-from hpsop_core.evaluation.evaluate import design_hull
 from hpsop_core.evaluation.hull_answer import solve_waves
+from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.hydro.friction import ittc57_coefficient
 from hpsop_core.report.words import trust
 

@@ -11,7 +11,7 @@ import pytest
 from hpsop_core import load_case, optimize
 from hpsop_core.cli.main import main
 from hpsop_core.errors import InputError
-from hpsop_core.evaluation.evaluate import Reference
+from hpsop_core.evaluation.reference import Reference
 from hpsop_core.export import design_files, tables
 from hpsop_core.runs.reader import RunReader
 

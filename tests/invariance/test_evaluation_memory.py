@@ -10,7 +10,8 @@ from hpsop_core.case.case import load_case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.evaluation import hull_answer as resistance
 from hpsop_core.evaluation import propeller_answer as propulsion
-from hpsop_core.evaluation.evaluate import Reference, evaluate, reference_for
+from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.reference import Reference, reference_for
 
 CASE = load_case("dtc-p4119")
 HULL = {"length_to_breadth": 7.3, "draft": 14.2, "displacement_ratio": 0.97}

@@ -13,7 +13,7 @@ from explorer.scene.geometry import scene_geometry
 from explorer.scene.pressure import hull_pressure
 from explorer.scene.waves import kelvin_waves, panel_waves, wave_surface
 from hpsop_core.case.case import Case, load_case
-from hpsop_core.evaluation.evaluate import design_hull, design_propeller
+from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.geometry.hull.hull import Hull
 
 FROUDE = 0.27

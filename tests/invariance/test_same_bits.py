@@ -28,7 +28,7 @@ for dimensions in ((340.0, 50.0, 14.2), (361.0, 48.0, 14.4)):
 EVERYTHING = """
 import dataclasses
 from hpsop_core import load_case, evaluate
-from hpsop_core.evaluation.evaluate import resistance_curve
+from hpsop_core.evaluation.curves import resistance_curve
 case = load_case("dtc-p4119")
 for ratio in (0.97, 1.03):
     design = dataclasses.replace(case.initial.variables, displacement_ratio=ratio, blade_count=4)

@@ -12,7 +12,7 @@ import rhino3dm
 import trimesh
 
 from hpsop_core import load_case, optimize
-from hpsop_core.evaluation.evaluate import design_hull, design_propeller
+from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.export.design_files import export_design
 from hpsop_core.geometry.clearance import propeller_placement
 from hpsop_core.geometry.hull.hull import Hull

@@ -8,7 +8,7 @@ import pytest
 
 from hpsop_core import evaluate, load_case, open_run
 from hpsop_core.assets import asset_path
-from hpsop_core.evaluation.evaluate import Reference
+from hpsop_core.evaluation.reference import Reference
 from hpsop_core.runs.reader import RunReader
 
 
