@@ -9,7 +9,7 @@ import math
 import sys
 
 from hpsop_core.case.case import SECTIONS, SHIPPED_CASES, load_case
-from hpsop_core.case.fields import FieldRule, rules, toml_value
+from hpsop_core.case.fields import FieldRule, rules, toml_text
 from hpsop_core.case.variables import VARIABLE_RULES
 
 _HEAD = """# The case file
@@ -45,7 +45,7 @@ def case_reference() -> str:
         parts.append("| field | default | unit | may be | meaning |\n|---|---|---|---|---|")
         for name, rule in rules(declaration).items():
             default = getattr(declaration, name, None)
-            shown = "-" if default is None else toml_value(default)
+            shown = "-" if default is None else toml_text({name: default}).strip().removeprefix(f"{name} = ")
             parts.append(f"| {name} | {shown} | {rule.unit or '-'} | {_limits(rule)} | {rule.meaning} |")
     return "\n".join(parts) + "\n"
 

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from hpsop_core.assets import asset_path
-from hpsop_core.case.fields import checked_value, read_section, rules, toml_value, unknown_name, write_section
+from hpsop_core.case.fields import checked_value, read_section, rules, section_table, toml_text, unknown_name
 from hpsop_core.case.sections import (
     ConditionsSection,
     ConstantsSection,
@@ -47,7 +47,7 @@ class Case:
     Attributes:
         name: one word; stands in every result.
         title, description: for people; the description says what the case assumes.
-        hull, propeller, initial, conditions, objectives, constraints, constants, optimization: see case_sections.
+        hull, propeller, initial, conditions, objectives, constraints, constants, optimization: see its sections.py.
         bounds: the design space.
     """
 
@@ -80,14 +80,12 @@ class Case:
 
     def to_toml(self) -> str:
         """The case as TOML, every field stated; ``case_from_toml`` gives the same case again."""
-        head = "".join(f"{name} = {toml_value(getattr(self, name))}\n" for name in _TEXTS)
-        parts = [head]
+        tables: dict[str, object] = {name: getattr(self, name) for name in _TEXTS}
         for name in SECTIONS:
-            parts.append(write_section(name, getattr(self, name)))
+            tables[name] = section_table(getattr(self, name))
             if name == "initial":
-                pairs = "".join(f"{key} = {toml_value(pair)}\n" for key, pair in self.bounds.as_dict().items())
-                parts.append(f"[bounds]\n{pairs}")
-        return "\n".join(parts)
+                tables["bounds"] = self.bounds.as_dict()
+        return toml_text(tables)
 
     def replaced(self, section: str, **changes: object) -> Case:
         """The same case with fields of one section changed, each checked against its rule.
@@ -125,7 +123,8 @@ def load_case(name_or_path: str | Path) -> Case:
     if not path.is_file():
         raise InputError(f"{name}: no such case; give a TOML file or one of {', '.join(SHIPPED_CASES)}")
     try:
-        content = path.read_text(encoding="utf-8")
+        # "sig": an editor may have put a byte-order mark before the first letter
+        content = path.read_text(encoding="utf-8-sig")
     except (OSError, UnicodeDecodeError) as error:
         raise InputError(f"{name}: cannot be read as a UTF-8 text ({error}); give a TOML file") from error
     return case_from_toml(content, name, path.resolve().parent)

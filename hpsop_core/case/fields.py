@@ -9,13 +9,17 @@ from __future__ import annotations
 import dataclasses
 import difflib
 import math
+import re
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from typing import Any, TypeVar
 
+import tomli_w
+
 from hpsop_core.errors import InputError
 
 _KEY = "hpsop"
+_SPREAD_LIST = re.compile(r"\[\n((?: .*,\n)+)\]")
 Section = TypeVar("Section")
 
 
@@ -164,25 +168,29 @@ def read_section(section: type[Section], table: Mapping[str, object], where: str
     return section(**values)
 
 
-def write_section(name: str, section: object) -> str:
+def section_table(section: object) -> dict[str, object]:
     """A section as a TOML table, every field stated (so that a stored case never depends on later defaults)."""
-    lines = [f"[{name}]"]
-    for field_name in rules(type(section)):
-        value = getattr(section, field_name)
-        if value is not None:
-            lines.append(f"{field_name} = {toml_value(value)}")
-    return "\n".join(lines) + "\n"
+    stated = {name: getattr(section, name) for name in rules(type(section))}
+    return {name: value for name, value in stated.items() if value is not None}
 
 
-def toml_value(value: object) -> str:
-    """A value in TOML's notation; floats keep all their digits."""
-    if isinstance(value, bool):
-        return "true" if value else "false"
-    if isinstance(value, (int, float)):
-        return repr(value)
-    if isinstance(value, str):
-        escaped = value.replace("\\", "\\\\").replace('"', '\\"').replace("\n", "\\n").replace("\t", "\\t")
-        return f'"{escaped}"'
-    if isinstance(value, Sequence):
-        return "[" + ", ".join(toml_value(item) for item in value) + "]"
-    raise TypeError(f"no TOML notation for {type(value).__name__}")
+def toml_text(tables: Mapping[str, object]) -> str:
+    """TOML of texts, numbers, lists of numbers and tables of them, in the order given; floats keep all their digits.
+
+    Raises:
+        InputError: a text is no Unicode (a file's name may hold bytes that are none).
+    """
+    # tomli-w gives every number of a list a line of its own; a pair of bounds reads better on one. Nothing else ends a
+    # line with a bracket that opens: a line break within a text is written as \n.
+    written = _SPREAD_LIST.sub(lambda found: f"[{_joined(found[1])}]", tomli_w.dumps(tables))
+    try:
+        written.encode()
+    except UnicodeEncodeError as error:
+        line = written[: error.start].count("\n")
+        shown = ascii(written.splitlines()[line])
+        raise InputError(f"case: {shown} is no Unicode text; rename the file or mend the text") from error
+    return written
+
+
+def _joined(lines: str) -> str:
+    return ", ".join(line.strip().removesuffix(",") for line in lines.splitlines())
