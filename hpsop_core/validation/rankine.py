@@ -10,7 +10,8 @@ from scipy.integrate import quad
 
 from hpsop_core.assets import read_asset_text
 from hpsop_core.geometry.analytic_bodies import ellipsoid_quads, wigley_half_breadth, wigley_panels
-from hpsop_core.geometry.hull.fit_table import HalfBreadths, parent_from_table
+from hpsop_core.geometry.hull.fit_table import parent_from_table
+from hpsop_core.geometry.hull.table_stations import HalfBreadths
 from hpsop_core.hydro.rankine.resistance import pressure_force
 from hpsop_core.hydro.rankine.settings import RankineSettings
 from hpsop_core.hydro.rankine.solver import double_body, solve, solve_panels, solver_axes

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 from hpsop_core.export.offsets import offsets_csv
-from hpsop_core.geometry.hull.fit import Section, StationMap, fit_patch, free_net
+from hpsop_core.geometry.hull.fit import FitSettings, Section, StationMap, fit_patch, free_net
 from hpsop_core.geometry.hull.hull import Hull, load_parent_hull, parent_hull_from_dict
 from tools.fit_dtc import DtcData, fitted_hull
 
@@ -75,7 +75,7 @@ def test_rounding_of_an_edge_does_not_choose_the_shape() -> None:
         edge = bulb.control_points[0] * (1.0 + 1e-15 * np.random.default_rng(seed).standard_normal((27, 3)))
         fixed_y, fixed_z = free_net(stations, bulb.knots_v)
         fixed_y[:, 0], fixed_y[:, -1] = 0.0, 0.0
-        fit = fit_patch(sections, stations, bulb.knots_v, fixed_y, fixed_z, edge=edge, rounds=1)
+        fit = fit_patch(sections, stations, bulb.knots_v, fixed_y, fixed_z, edge=edge, settings=FitSettings(rounds=1))
         nets.append(fit.surface.control_points)
     # 1e-15 of 360 m times the normal equations' condition, at most 1e7: below the micrometre that the file stores.
     assert max(float(np.max(np.abs(net - nets[0]))) for net in nets) < 1e-6

@@ -19,8 +19,25 @@ from hpsop_core.geometry.nurbs import NurbsSurface, basis_matrix, clamped_knots,
 from hpsop_core.typing_aliases import Array
 
 DEGREE = 3
+# Points that a section is resampled to at equal chord length.
+SAMPLES = 81
 # Each round holds the control points that passed a limit; later rounds move few.
 HOLDING_ROUNDS = 4
+
+
+@dataclass(frozen=True)
+class FitSettings:
+    """Weights and rounds of a fit.
+
+    Attributes:
+        smoothing: weight of the second differences of the net; it only decides what the points leave open.
+        rounds: corrections of v by projection.
+        least_half_breadth: free control points keep this distance from the centreplane, m: the sides never cross.
+    """
+
+    smoothing: float = 5e-2
+    rounds: int = 4
+    least_half_breadth: float = 2e-3
 
 
 @dataclass(frozen=True)
@@ -186,10 +203,7 @@ def fit_patch(
     fixed_y: Array,
     fixed_z: Array,
     *,
-    samples: int = 81,
-    rounds: int = 4,
-    smoothing: float = 5e-2,
-    least_half_breadth: float = 2e-3,
+    settings: FitSettings = FitSettings(),
     edge: Array | None = None,
     heights: tuple[float, float] | None = None,
 ) -> PatchFit:
@@ -200,10 +214,7 @@ def fit_patch(
         stations: x of u; its control points are the x of the surface's net.
         knots_v: clamped knots along the section.
         fixed_y, fixed_z: (nu, nv), NaN where the value is free, else the value the control point keeps.
-        samples: points a section is resampled to at equal chord length.
-        rounds: corrections of v by projection.
-        smoothing: weight of the second differences of the net; it only decides what the points leave open.
-        least_half_breadth: free control points keep this distance from the centreplane, m: the sides never cross.
+        settings: weights and rounds.
         edge: control points (nv, 3) of a shared edge in u; sections then spread v along their girth as that edge does,
             so that parameter lines run on smoothly from the neighbour.
         heights: lowest and highest z of free control points, m, so that the surface stays between them: a profile that
@@ -212,11 +223,11 @@ def fit_patch(
     Returns:
         The surface and the deviation of the given points.
     """
-    fractions = np.linspace(0.0, 1.0, samples)
+    fractions = np.linspace(0.0, 1.0, SAMPLES)
     u_of = stations.u(np.array([section.x for section in sections]))
     dense = [section.resampled(fractions) for section in sections]
     points = np.concatenate([*dense, *(section.points for section in sections)])
-    u = np.concatenate([np.repeat(u_of, samples), np.repeat(u_of, [len(s.points) for s in sections])])
+    u = np.concatenate([np.repeat(u_of, SAMPLES), np.repeat(u_of, [len(s.points) for s in sections])])
     v = np.concatenate([np.tile(fractions, len(sections)), *(s.chord_fractions() for s in sections)])
     # Ends are told before the spreading: its rounding must not decide which points are held there.
     pinned = (v == 0.0) | (v == 1.0)
@@ -227,20 +238,20 @@ def fit_patch(
     net = np.zeros((nu, nv, 3))
     net[..., 0] = stations.control_x[:, None]
     left = basis_matrix(stations.knots, DEGREE, u)
-    rough = smoothing * _roughness(nu, nv)
+    rough = settings.smoothing * _roughness(nu, nv)
     surface: NurbsSurface | None = None
-    for _ in range(rounds + 1):
+    for _ in range(settings.rounds + 1):
         if surface is not None:
             moved = _projected(surface, u, v, points, 2)
             v = np.where(pinned, v, moved)
         design = sparse.diags(weight) @ _row_kronecker(left, basis_matrix(knots_v, DEGREE, v))
         for axis, fixed, limits in ((0, fixed_y, None), (1, fixed_z, heights)):
             net[..., axis + 1] = _solve(design, weight * points[:, axis], rough, fixed, limits)
-        net[..., 1] = np.where(np.isnan(fixed_y), np.maximum(net[..., 1], least_half_breadth), net[..., 1])
+        net[..., 1] = np.where(np.isnan(fixed_y), np.maximum(net[..., 1], settings.least_half_breadth), net[..., 1])
         surface = NurbsSurface(DEGREE, DEGREE, stations.knots, knots_v, net, np.ones((nu, nv)))
     if surface is None:
         raise ValueError("a fit needs at least one round")
-    given = len(sections) * samples
+    given = len(sections) * SAMPLES
     return _deviation(surface, u[given:], v[given:], points[given:], pinned[given:])
 
 

@@ -10,8 +10,9 @@ import numpy as np
 from scipy import ndimage
 
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.hull.fit_table import HalfBreadths, parent_from_table
+from hpsop_core.geometry.hull.fit_table import parent_from_table
 from hpsop_core.geometry.hull.hull import ParentHull
+from hpsop_core.geometry.hull.table_stations import HalfBreadths
 from hpsop_core.typing_aliases import Array
 
 COLUMNS = ("station_x_m", "waterline_z_m", "half_breadth_m")
