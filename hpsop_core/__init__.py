@@ -1,6 +1,28 @@
 """hpsop: hydrodynamic optimisation of a ship's hull and propeller as one system. The method, headless.
 
->>> from hpsop_core import load_case, evaluate, optimize, open_run
+The whole Python interface; the command ``hpsop`` is thin over it:
+
+=================  =====================================================================================
+load_case          a case: what is optimised, within what, on which conditions
+evaluate           everything about one design of a case at a level of fidelity; a failure is a value
+optimize           a search to its end, or on with one that was interrupted; a run file keeps everything
+open_run           what a run file holds, also while it is being written
+resistance         resistance of a design, or of a hull at hand, over Froude numbers
+open_water         KT, KQ and efficiency of a design's propeller, or of one at hand, over J
+hydrostatics       volume, coefficients and centres of a design's hull, or of one at hand
+waves, pressures   the wave field and the pressures on hull and blades of a design
+load_hull          a hull from a table of offsets or a closed mesh
+load_propeller     a propeller from a radial table
+export             a design of a run as CAD, meshes and tables
+report             a run as one HTML file
+=================  =====================================================================================
+
+>>> from hpsop_core import evaluate, load_case
+>>> evaluate(load_case("dtc-p4119-paper")).objectives["f1"]
+1.0
+
+SI units, radians inside; ship axes x forward from the after perpendicular, y to port, z up (docs/conventions.md).
+Everything is frozen. Bad input raises ``hpsop_core.errors.InputError``, one line with the remedy.
 """
 
 from __future__ import annotations
@@ -11,21 +33,53 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from hpsop_core.case.case import load_case
     from hpsop_core.evaluation.evaluate import evaluate
+    from hpsop_core.evaluation.open_water import open_water
+    from hpsop_core.evaluation.resistance import hydrostatics, resistance
+    from hpsop_core.export.design_files import export_design as export
+    from hpsop_core.geometry.from_files import load_hull, load_propeller
+    from hpsop_core.report.report import write_report as report
     from hpsop_core.runs import open_run, optimize
 
 __version__ = "0.1.0"
-__all__ = ["__version__", "evaluate", "load_case", "open_run", "optimize"]
+__all__ = [
+    "__version__",
+    "evaluate",
+    "export",
+    "hydrostatics",
+    "load_case",
+    "load_hull",
+    "load_propeller",
+    "open_run",
+    "open_water",
+    "optimize",
+    "report",
+    "resistance",
+]
 
 _HOMES = {
     "load_case": "hpsop_core.case.case",
     "evaluate": "hpsop_core.evaluation.evaluate",
     "optimize": "hpsop_core.runs",
     "open_run": "hpsop_core.runs",
+    "resistance": "hpsop_core.evaluation.resistance",
+    "hydrostatics": "hpsop_core.evaluation.resistance",
+    "open_water": "hpsop_core.evaluation.open_water",
+    "load_hull": "hpsop_core.geometry.from_files",
+    "load_propeller": "hpsop_core.geometry.from_files",
 }
+# Packages that bear the function's own name and answer calls (each says so in its __init__): Python makes a package an
+# attribute of its parent once it is imported, so that no function of that name could stay here.
+_PACKAGES = ("export", "report")
 
 
 def __getattr__(name: str) -> Any:
     """The Python interface, imported when it is first used: a mistyped command answers without loading the solvers."""
     if name in _HOMES:
         return getattr(importlib.import_module(_HOMES[name]), name)
+    if name in _PACKAGES:
+        return importlib.import_module(f"hpsop_core.{name}")
     raise AttributeError(f"module 'hpsop_core' has no attribute '{name}'")
+
+
+def __dir__() -> list[str]:
+    return sorted({*globals(), *__all__})

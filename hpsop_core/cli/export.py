@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 from hpsop_core.case.case import load_case
-from hpsop_core.cli.runs import INTERRUPTED, Progress, driven
+from hpsop_core.cli.driving import INTERRUPTED, Progress, driven
 from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.reader import open_run
@@ -44,19 +44,18 @@ def add_parsers(commands: Any) -> None:
 
 
 def _export(arguments: argparse.Namespace) -> int:
-    from hpsop_core.export.design_files import FORMATS, export_design
+    from hpsop_core import export
 
-    formats = FORMATS if arguments.formats is None else [w.strip() for w in arguments.formats.split(",") if w.strip()]
-    files = export_design(open_run(arguments.run), identifier(arguments.design), arguments.to, formats, arguments.force)
-    for file in files:
+    formats = None if arguments.formats is None else [w.strip() for w in arguments.formats.split(",") if w.strip()]
+    for file in export(open_run(arguments.run), identifier(arguments.design), arguments.to, formats, arguments.force):
         print(_with_size(file))
     return 0
 
 
 def _report(arguments: argparse.Namespace) -> int:
-    from hpsop_core.report.report import write_report
+    from hpsop_core import report
 
-    print(_with_size(write_report(open_run(arguments.run), arguments.to, arguments.force)))
+    print(_with_size(report(open_run(arguments.run), arguments.to, arguments.force)))
     return 0
 
 

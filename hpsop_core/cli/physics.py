@@ -4,13 +4,10 @@ from __future__ import annotations
 
 import argparse
 import dataclasses
-import math
 import sys
-from pathlib import Path
-from typing import Any
+from typing import TYPE_CHECKING, Any
 
 from hpsop_core.case.fields import FieldRule
-from hpsop_core.case.sections import HullSection
 from hpsop_core.cli.arguments import (
     add_json,
     add_level,
@@ -24,13 +21,12 @@ from hpsop_core.cli.arguments import (
 )
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.model_test import MODEL_DIAMETER, MODEL_ROTATION_RATE, MODEL_VISCOSITY
 
-FROUDE_RULE = FieldRule("number", "Froude number", "", 0.1, 0.5)
-ADVANCE_RULE = FieldRule("number", "advance coefficient", "", 0.05, 2.0)
-# ITTC recommended properties at 15 C: density in kg/m3, kinematic viscosity in m2/s.
-WATERS = {"salt": (1025.0, 1.188e-6), "fresh": (999.1, 1.1386e-6)}
-# P4119's open-water test: diameter in m, rotation rate in 1/s, viscosity in m2/s.
-MODEL_TEST = (0.3048, 10.0, 1e-6)
+if TYPE_CHECKING:
+    from hpsop_core.case.case import Case
+    from hpsop_core.geometry.hull.hull import Hull
+    from hpsop_core.geometry.propeller.propeller import Propeller
 
 
 def add_parsers(commands: Any) -> None:
@@ -60,9 +56,9 @@ def add_parsers(commands: Any) -> None:
     open_water.add_argument("--geometry", metavar="FILE.csv", help="r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c")
     open_water.add_argument("--blades", metavar="Z", help="number of blades, with --geometry")
     open_water.add_argument("--advance", metavar="J[,J...]", required=True, help="advance coefficients")
-    open_water.add_argument("--diameter", metavar="D", help=f"in m, {MODEL_TEST[0]} unless given")
-    open_water.add_argument("--rotation-rate", metavar="N", help=f"in 1/s, {MODEL_TEST[1]} unless given")
-    open_water.add_argument("--viscosity", metavar="NU", help=f"in m2/s, {MODEL_TEST[2]} unless given")
+    open_water.add_argument("--diameter", metavar="D", help=f"in m, {MODEL_DIAMETER} unless given")
+    open_water.add_argument("--rotation-rate", metavar="N", help=f"in 1/s, {MODEL_ROTATION_RATE} unless given")
+    open_water.add_argument("--viscosity", metavar="NU", help=f"in m2/s, {MODEL_VISCOSITY} unless given")
     open_water.add_argument(
         "--inviscid", action="store_true", help="without section drag and without the viscous factor on the lift"
     )
@@ -77,7 +73,7 @@ def add_parsers(commands: Any) -> None:
 
 
 def _evaluate(arguments: argparse.Namespace) -> int:
-    from hpsop_core.evaluation.evaluate import evaluate
+    from hpsop_core import evaluate
     from hpsop_core.evaluation.hull_answer import parent_hull
 
     case, variables = case_and_design(arguments.case, arguments.changes)
@@ -141,29 +137,31 @@ def print_evaluation(result: Evaluation) -> None:
         print(f"warning: {warning}")
 
 
-def _water(word: str | None, default: tuple[float, float]) -> tuple[float, float]:
+def _water(word: str | None) -> tuple[float | None, float | None]:
+    """Density and viscosity that --water names; None, None where it is absent."""
+    from hpsop_core.evaluation.resistance import DENSITY_RULE, VISCOSITY_RULE, WATERS
+
     if word is None:
-        return default
+        return None, None
     if word in WATERS:
         return WATERS[word]
     parts = word.split(",")
     if len(parts) != 2:
         raise InputError(f"--water {word}: write salt, fresh or DENSITY,VISCOSITY, for example 998.8,1.09e-6")
-    density = checked_option(parts[0], FieldRule("number", "", "kg/m3", 900.0, 1100.0), "--water density")
-    viscosity = checked_option(parts[1], FieldRule("number", "", "m2/s", 5e-7, 3e-6), "--water viscosity")
-    return float(density or 0.0), float(viscosity or 0.0)
+    density = checked_option(parts[0], DENSITY_RULE, "--water density")
+    return density, checked_option(parts[1], VISCOSITY_RULE, "--water viscosity")
 
 
 def _resistance(arguments: argparse.Namespace) -> int:
-    from hpsop_core.case.sections import ConstantsSection
-    from hpsop_core.evaluation.curves import resistance_curve
-    from hpsop_core.evaluation.hull_answer import build_hull, hull_variables, parent_hull, resistance_point, solve_waves
-    from hpsop_core.evaluation.shapes import initial_volume
+    from hpsop_core import load_hull, resistance
+    from hpsop_core.evaluation.resistance import FORM_FACTOR_RULE, FROUDE_RULE
 
     froude_numbers = number_list(arguments.froude, FROUDE_RULE, "--froude")
-    form_factor = checked_option(arguments.form_factor, FieldRule("number", "", "", 0.0, 1.0), "--form-factor")
+    form_factor = checked_option(arguments.form_factor, FORM_FACTOR_RULE, "--form-factor")
     if (arguments.case is None) == (arguments.offsets is None):
         raise InputError("resistance: give either a CASE or --offsets FILE.csv with --length and --draft")
+    subject: Case | Hull
+    variables = None
     if arguments.offsets is not None:
         if arguments.length is None or arguments.draft is None:
             raise InputError("resistance: --offsets needs --length (Lpp) and --draft, in metres")
@@ -171,44 +169,23 @@ def _resistance(arguments: argparse.Namespace) -> int:
             raise InputError("resistance: --set changes a case's design; an offsets table is taken as it is")
         length = checked_option(arguments.length, FieldRule("number", "", "m", 0.1, 600.0), "--length")
         draft = checked_option(arguments.draft, FieldRule("number", "", "m", 0.005, 40.0), "--draft")
-        section = HullSection(offsets=str(Path(arguments.offsets)), length=length, draft=draft)
-        parent = parent_hull(section)
-        density, viscosity = _water(arguments.water, WATERS["salt"])
-        hull = parent.transform(parent.length, parent.breadth, parent.draft)
-        points = [
-            resistance_point(
-                hull, wave, froude, gravity=ConstantsSection.gravity, density=density, viscosity=viscosity,
-                form_factor=form_factor or 0.0,
-            )
-            for froude, wave in zip(froude_numbers, solve_waves(hull, arguments.level, froude_numbers), strict=True)
-        ]  # fmt: skip
+        subject = load_hull(arguments.offsets, length, draft)
     else:
         if arguments.length is not None or arguments.draft is not None:
             raise InputError("resistance: --length and --draft go with --offsets; change a case by --set")
-        case, variables = case_and_design(arguments.case, arguments.changes)
-        density, viscosity = _water(arguments.water, (case.constants.density, case.constants.viscosity))
-        case = dataclasses.replace(
-            case, constants=dataclasses.replace(case.constants, density=density, viscosity=viscosity)
-        )
-        points = list(resistance_curve(case, variables, arguments.level, froude_numbers, form_factor=form_factor))
-        hull = build_hull(hull_variables(case.hull, variables, initial_volume(case)))
-    hydrostatics = hull.hydrostatics
-    figures = {
-        "length": hull.length,
-        "breadth": hull.breadth,
-        "draft": hull.draft,
-        "block_coefficient": hydrostatics.block_coefficient,
-        "displaced_volume": hydrostatics.displaced_volume,
-        "wetted_surface": hydrostatics.wetted_surface,
-        "longitudinal_centre_of_buoyancy": hydrostatics.longitudinal_centre_of_buoyancy,
-    }
-    if hull.parent.fit_report is not None:
-        print(hull.parent.fit_report, file=sys.stderr)
+        subject, variables = case_and_design(arguments.case, arguments.changes)
+    density, viscosity = _water(arguments.water)
+    result = resistance(
+        subject, froude_numbers, arguments.level, variables,
+        form_factor=form_factor, density=density, viscosity=viscosity,
+    )  # fmt: skip
+    if result.hull.parent.fit_report is not None:
+        print(result.hull.parent.fit_report, file=sys.stderr)
     if arguments.json:
-        print_json({"hull": figures, "points": [dataclasses.asdict(point) for point in points]})
+        print_json(result.as_dict())
         return 0
-    print(", ".join(f"{name} {value:.6g}" for name, value in figures.items()))
-    for warning in dict.fromkeys([*hull.warnings, *(line for point in points for line in point.warnings)]):
+    print(", ".join(f"{name} {value:.6g}" for name, value in result.as_dict()["hull"].items()))
+    for warning in result.warnings:
         print(f"warning: {warning}", file=sys.stderr)
     rows = [
         [
@@ -217,80 +194,57 @@ def _resistance(arguments: argparse.Namespace) -> int:
             "-" if p.wave_coefficient_pressure is None else f"{1e3 * p.wave_coefficient_pressure:.4f}",
             f"{p.wave_resistance:.6g}", f"{p.total_resistance:.6g}",
         ]
-        for p in points
+        for p in result.points
     ]  # fmt: skip
     print_table(["Fn", "V m/s", "10^3 CF", "10^3 Cw", "10^3 Cw(p)", "Rw N", "Rt N"], rows)
     return 0
 
 
 def _open_water(arguments: argparse.Namespace) -> int:
-    import numpy as np
+    from hpsop_core import load_propeller, open_water
+    from hpsop_core.evaluation import open_water as test
+    from hpsop_core.geometry.from_files import FEWEST_BLADES, MOST_BLADES
 
-    from hpsop_core.evaluation.propeller_answer import solve_open_water
-    from hpsop_core.evaluation.shapes import design_propeller
-    from hpsop_core.geometry.propeller.propeller import propeller_family, radial_table_from_csv
-    from hpsop_core.hydro.open_water import SectionDrag, reynolds_number_07R
-
-    advance = number_list(arguments.advance, ADVANCE_RULE, "--advance")
-    diameter = checked_option(arguments.diameter, FieldRule("number", "", "m", 0.01, 20.0), "--diameter")
-    rate = checked_option(arguments.rotation_rate, FieldRule("number", "", "1/s", 0.1, 200.0), "--rotation-rate")
-    viscosity = checked_option(arguments.viscosity, FieldRule("number", "", "m2/s", 1e-7, 1e-4), "--viscosity")
+    advance = number_list(arguments.advance, test.ADVANCE_RULE, "--advance")
+    diameter = checked_option(arguments.diameter, test.DIAMETER_RULE, "--diameter")
+    rate = checked_option(arguments.rotation_rate, test.ROTATION_RATE_RULE, "--rotation-rate")
+    viscosity = checked_option(arguments.viscosity, test.VISCOSITY_RULE, "--viscosity")
     if (arguments.case is None) == (arguments.geometry is None):
         raise InputError("open-water: give either a CASE or --geometry FILE.csv with --blades")
-    size = MODEL_TEST[0] if diameter is None else diameter
+    subject: Case | Propeller
+    variables = None
     if arguments.geometry is not None:
         if arguments.blades is None:
             raise InputError("open-water: --geometry needs --blades, the number of blades")
         if arguments.changes:
             raise InputError("open-water: --set changes a case's design; a radial table is taken as it is")
-        blades = checked_option(arguments.blades, FieldRule("integer", "", "", 2, 7), "--blades")
-        table = radial_table_from_csv(Path(arguments.geometry), int(blades or 0))
-        propeller = propeller_family(table, size, int(blades or 0))
+        blades = checked_option(arguments.blades, FieldRule("integer", "", "", FEWEST_BLADES, MOST_BLADES), "--blades")
+        subject = load_propeller(arguments.geometry, int(blades or 0))
     else:
         if arguments.blades is not None:
             raise InputError("open-water: --blades goes with --geometry; change a case by --set blade_count=Z")
-        case, variables = case_and_design(arguments.case, arguments.changes)
-        propeller = design_propeller(case, variables).with_diameter(size)
-    rotation_rate = MODEL_TEST[1] if rate is None else rate
-    kinematic = MODEL_TEST[2] if viscosity is None else viscosity
-    drag = SectionDrag.inviscid() if arguments.inviscid else SectionDrag.model_scale(rotation_rate, kinematic)
-    result = solve_open_water(propeller, arguments.level, advance, drag)
-    reynolds = reynolds_number_07R(propeller, np.array(advance), rotation_rate, kinematic)
-    points: list[dict[str, Any]] = []
-    for j, kt, kq in zip(advance, result.thrust_coefficient, result.torque_coefficient, strict=True):
-        points.append(
-            {
-                "advance_coefficient": j,
-                "thrust_coefficient": float(kt),
-                "torque_coefficient": float(kq),
-                # The identity, so that no rounding of a solver's own stands between the three numbers.
-                "open_water_efficiency": float(j * kt / (2.0 * math.pi * kq)) if kq > 0.0 else None,
-            }
-        )
+        subject, variables = case_and_design(arguments.case, arguments.changes)
+    result = open_water(
+        subject, advance, arguments.level, variables, diameter=diameter,
+        rotation_rate=MODEL_ROTATION_RATE if rate is None else rate,
+        viscosity=MODEL_VISCOSITY if viscosity is None else viscosity, inviscid=arguments.inviscid,
+    )  # fmt: skip
     if arguments.json:
-        print_json(
-            {
-                "level": arguments.level,
-                "diameter": propeller.diameter,
-                "blade_count": propeller.blade_count,
-                "expanded_area_ratio": propeller.expanded_area_ratio,
-                "reynolds_number_07R": reynolds.tolist(),
-                "solver": result.solver,
-                "settings": result.settings,
-                "points": points,
-            }
-        )
+        print_json(result.as_dict())
         return 0
     rows = [
-        [f"{p['advance_coefficient']:.4f}", f"{p['thrust_coefficient']:.5f}", f"{10 * p['torque_coefficient']:.5f}",
-         "-" if p["open_water_efficiency"] is None else f"{p['open_water_efficiency']:.4f}"]
-        for p in points
+        [
+            f"{p.advance_coefficient:.4f}", f"{p.thrust_coefficient:.5f}", f"{10 * p.torque_coefficient:.5f}",
+            "-" if p.open_water_efficiency is None else f"{p.open_water_efficiency:.4f}",
+        ]
+        for p in result.points
     ]  # fmt: skip
     print_table(["J", "KT", "10KQ", "eta0"], rows)
+    propeller, reynolds = result.propeller, result.reynolds_number_07R
     print(
         f"{result.solver}; D {propeller.diameter:g} m, Z {propeller.blade_count}, EAR "
         f"{propeller.expanded_area_ratio:.3f}, "
-        + ("no viscosity" if arguments.inviscid else f"Re at 0.7 R {reynolds.min():.2e} to {reynolds.max():.2e}")
+        + ("no viscosity" if result.inviscid else f"Re at 0.7 R {min(reynolds):.2e} to {max(reynolds):.2e}")
     )
     return 0
 

@@ -64,7 +64,7 @@ class _Design:
 
 
 def export_design(
-    run: RunReader, design: int | str, folder: str | Path, formats: Sequence[str] = FORMATS, force: bool = False
+    run: RunReader, design: int | str, folder: str | Path, formats: Sequence[str] | None = None, force: bool = False
 ) -> tuple[Path, ...]:
     """Write a design's files into a folder: all of them, or none.
 
@@ -72,7 +72,7 @@ def export_design(
         run: the run that has it.
         design: its id, "initial", "compromise" or "knee".
         folder: made if it is not there.
-        formats: any of ``FORMATS``.
+        formats: any of ``FORMATS``; all of them by default.
         force: write into a folder that holds something already; files of the same name are replaced, others stay.
 
     Returns:
@@ -82,7 +82,7 @@ def export_design(
         InputError: no such design or format, a failed design, or a folder that cannot be used.
         SolverFailure: the form or its resistance curve cannot be computed.
     """
-    wanted = checked_formats(formats)
+    wanted = checked_formats(FORMATS if formats is None else formats)
     record = run.design(design)
     if not record.evaluation.ok:
         raise InputError(

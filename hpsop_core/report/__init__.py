@@ -1,0 +1,22 @@
+"""A run as one HTML file to print or pass on; called, it is ``report`` of the Python interface."""
+
+from __future__ import annotations
+
+import sys
+from pathlib import Path
+from types import ModuleType
+from typing import TYPE_CHECKING
+
+if TYPE_CHECKING:
+    from hpsop_core.runs.reader import RunReader
+
+
+class _Report(ModuleType):
+    def __call__(self, run: RunReader, target: str | Path, force: bool = False) -> Path:
+        """``report.write_report``."""
+        from hpsop_core.report.report import write_report
+
+        return write_report(run, target, force)
+
+
+sys.modules[__name__].__class__ = _Report

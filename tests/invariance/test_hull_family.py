@@ -8,8 +8,8 @@ import numpy as np
 import pytest
 
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.hull.form import LEAST_STRETCH
 from hpsop_core.geometry.hull import hydrostatics
+from hpsop_core.geometry.hull.form import LEAST_STRETCH
 from hpsop_core.geometry.hull.hull import Hull, ParentHull, load_parent_hull
 from hpsop_core.hydro.michell import wave_coefficients
 
