@@ -5,10 +5,13 @@ With u = tan(theta), s = sqrt(1 + u^2) and k0 = g/U^2,
     Rw = 4 rho g^2/(pi U^2) int_0^inf |F(u)|^2 sqrt(1 + u^2) du,
     F = iint dY/dx exp(k0 s^2 z + i k0 s x) dx dz     (z <= 0 below the waterline).
 
+F is the Kochin function of the hull; ``kochin_by_cell`` is the one place that computes it, for this integral and for the
+free waves that carry the resistance away (hydro/kelvin.py).
+
 Between its points the table is bilinear (tent functions) and both inner integrals are exact: in x, dY/dx is constant
 over a cell, which gives a sinc; in z, the moments of exp over a cell. The integrand is even and analytic at u = 0 and
 its phase is nearly linear in u, so the trapezoidal rule converges exponentially; only the tail matters.
-Source: Michell 1898 in the form of notes on thin-ship theory; the substitution and the element moments are ours.
+Source: Michell, Phil. Mag. 45 (1898); the substitution and the element moments are ours.
 """
 
 from __future__ import annotations
@@ -69,7 +72,19 @@ def _wave_resistance(stations: Array, depths: Array, rises: Array, wave_number: 
     step = PHASE_STEP / (wave_number * (stations[-1] - stations[0]))
     tangents = np.arange(0.0, largest_tangent + 0.5 * step, step)
     real, imaginary = amplitude(stations, depths, rises, wave_number, tangents)
-    integrand = (real**2 + imaginary**2) * np.sqrt(1.0 + tangents**2)
+    return spectrum_resistance(real**2 + imaginary**2, wave_number, tangents, step)
+
+
+def spectrum_resistance(power: Array, wave_number: float, tangents: Array, step: float) -> float:
+    """Rw/(1/2 rho U^2 Lpp^2) that free waves of a spectrum carry away, by the trapezoidal rule.
+
+    Args:
+        power: |F|^2 in units of Lpp, shape (tangents,).
+        wave_number: k0 Lpp = 1/Fn^2.
+        tangents: u from 0 in equal steps.
+        step: of ``tangents``.
+    """
+    integrand = power * np.sqrt(1.0 + tangents**2)
     integral = step * (integrand.sum() - 0.5 * integrand[0])
     return float(8.0 * wave_number**2 / np.pi * integral)
 
@@ -84,6 +99,17 @@ def amplitude(stations: Array, depths: Array, rises: Array, wave_number: float, 
         wave_number: k0 Lpp = 1/Fn^2.
         tangents: u.
     """
+    real, imaginary = kochin_by_cell(stations, depths, rises, wave_number, tangents)
+    return real.sum(axis=1), imaginary.sum(axis=1)
+
+
+def kochin_by_cell(
+    stations: Array, depths: Array, rises: Array, wave_number: float, tangents: Array
+) -> tuple[Array, Array]:
+    """Real and imaginary part of what each cell between two stations adds to F(u), each of shape (tangents, nx - 1).
+
+    Arguments as for ``amplitude``; in units of Lpp.
+    """
     secant = np.sqrt(1.0 + tangents**2)
     weights = _depth_weights(depths, wave_number * secant**2)  # (nu, nz)
     by_cell = weights @ rises.T  # (nu, nx - 1)
@@ -93,7 +119,7 @@ def amplitude(stations: Array, depths: Array, rises: Array, wave_number: float, 
     # (1/h) int exp(i k s x) dx over a cell = exp(i k s middle) sin(k s h/2)/(k s h/2)
     by_cell = by_cell * np.sinc(phase * half / np.pi)
     angle = phase * middle
-    return (by_cell * np.cos(angle)).sum(axis=1), (by_cell * np.sin(angle)).sum(axis=1)
+    return by_cell * np.cos(angle), by_cell * np.sin(angle)
 
 
 def _depth_weights(depths: Array, decay: Array) -> Array:
