@@ -33,6 +33,7 @@ from typing import TYPE_CHECKING, Any
 if TYPE_CHECKING:
     from hpsop_core.case.case import load_case
     from hpsop_core.evaluation.evaluate import evaluate
+    from hpsop_core.evaluation.fields import pressures, waves
     from hpsop_core.evaluation.open_water import open_water
     from hpsop_core.evaluation.resistance import hydrostatics, resistance
     from hpsop_core.export.design_files import export_design as export
@@ -52,8 +53,10 @@ __all__ = [
     "open_run",
     "open_water",
     "optimize",
+    "pressures",
     "report",
     "resistance",
+    "waves",
 ]
 
 _HOMES = {
@@ -64,6 +67,8 @@ _HOMES = {
     "resistance": "hpsop_core.evaluation.resistance",
     "hydrostatics": "hpsop_core.evaluation.resistance",
     "open_water": "hpsop_core.evaluation.open_water",
+    "waves": "hpsop_core.evaluation.fields",
+    "pressures": "hpsop_core.evaluation.fields",
     "load_hull": "hpsop_core.geometry.from_files",
     "load_propeller": "hpsop_core.geometry.from_files",
 }

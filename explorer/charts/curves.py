@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
 
 from explorer.charts.plot import Plot, legend, padded, smooth
+from hpsop_core.evaluation.curves import HullLines
 from hpsop_core.evaluation.result import Evaluation
 
 Array = NDArray[np.float64]
@@ -44,23 +45,6 @@ class DesignCurves:
     thrust_required: Array
     thrust_available: tuple[Array, ...]
     level: int
-
-
-@dataclass(frozen=True)
-class HullLines:
-    """Sections and areas of a hull.
-
-    Attributes:
-        sections: (station number 0 at AP to 20 at FP, polylines of (y, z) in m, port side).
-        area_x: (n,) x/Lpp from AP; area: (n,) m2.
-        draft: m.
-    """
-
-    sections: tuple[tuple[float, tuple[Array, ...]], ...]
-    area_x: Array
-    area: Array
-    draft: float
-    length: float = field(default=1.0)
 
 
 def open_water_chart(designs: Sequence[tuple[Series, Evaluation]], width: float, height: float) -> str:
@@ -287,7 +271,7 @@ def sectional_area_chart(designs: Sequence[tuple[Series, HullLines]], width: flo
     if not designs:
         plot.message("computing …")
     for series, lines in designs:
-        plot.line(lines.area_x, lines.area, f"{series.css} {series.dash}", title=series.name)
+        plot.line(lines.area_station, lines.area, f"{series.css} {series.dash}", title=series.name)
     return plot.svg("sectional_area") + legend([("line", f"{s.css} {s.dash}", s.name) for s, _ in designs])
 
 

@@ -7,16 +7,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from explorer.charts.curves import HullLines
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
+from hpsop_core.evaluation.curves import HullLines
 from hpsop_core.evaluation.shapes import design_hull, design_propeller
-from hpsop_core.geometry.clearance import propeller_plane_x
+from hpsop_core.geometry.clearance import propeller_placement
 from hpsop_core.geometry.hull.mesh import hull_view_parts
 from hpsop_core.geometry.propeller.mesh import propeller_view_parts
 
-# propeller axes: x downstream, y to starboard; ship axes: x forward, y to port
-_TO_SHIP = np.array([-1.0, -1.0, 1.0])
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
 
 
@@ -54,6 +52,8 @@ def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
     propeller = design_propeller(case, variables)
     parts = hull_view_parts(hull, "view")
     blades, hub = (propeller_view_parts(propeller, "view")[name] for name in ("blades", "hub"))
+    placement = propeller_placement(hull, propeller)
+    turn, position = placement[:3, :3].T, placement[:3, 3]
     empty = (np.zeros((3, 3)), np.array([[0, 1, 2]]))
     port = hull.waterline()
     port = port + np.array([0.0, 0.06])  # just outside the hull, or it would drown in it
@@ -62,9 +62,9 @@ def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
     return SceneGeometry(
         underwater=parts.get("underwater", empty),
         topsides=parts.get("topsides", empty),
-        blades=(blades[0] * _TO_SHIP, blades[1]),
-        hub=(hub[0] * _TO_SHIP, hub[1]),
-        propeller_position=(float(propeller_plane_x(hull, propeller)), 0.0, float(hull.shaft_height)),
+        blades=(blades[0] @ turn, blades[1]),
+        hub=(hub[0] @ turn, hub[1]),
+        propeller_position=(float(position[0]), float(position[1]), float(position[2])),
         waterline=waterline,
         length=hull.length,
         breadth=hull.breadth,

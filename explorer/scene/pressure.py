@@ -1,4 +1,4 @@
-"""The pressure on a hull at a condition, by level 2's panels, on the mesh that the page shows."""
+"""A pressure of the core on the mesh that the page shows."""
 
 from __future__ import annotations
 
@@ -7,13 +7,12 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from explorer.scene.geometry import SceneGeometry
 from explorer.scene.transfer import transferred
-from hpsop_core.geometry.hull.hull import Hull
-from hpsop_core.geometry.hull.mesh import hull_view_parts
-from hpsop_core.geometry.hull.panels import block_points
-from hpsop_core.hydro.rankine.solver import RankineFields, solve
+from hpsop_core.evaluation.fields import PressureField
 
 Array = NDArray[np.float64]
+Faces = NDArray[np.int64]
 
 
 @dataclass(frozen=True)
@@ -27,7 +26,7 @@ class PressureMap:
     """
 
     vertices: Array
-    faces: NDArray[np.int64]
+    faces: Faces
     coefficient: Array
     note: str
 
@@ -38,46 +37,30 @@ class PressureMap:
         return np.bincount(self.faces.ravel(), np.repeat(area / 3.0, 3), minlength=len(self.vertices))
 
 
-def hull_pressure(hull: Hull, froude_number: float) -> PressureMap:
-    """(p - p0)/(1/2 rho V^2) without the hydrostatic part, on the underwater part of the "view" mesh.
+def hull_map(field: PressureField, geometry: SceneGeometry) -> PressureMap:
+    """The hull's pressure on its underwater mesh."""
+    vertices, faces = geometry.underwater
+    coefficient = transferred(field.points, *_nodal(field, field.quads, field.uniform_coefficient), vertices, faces)
+    note = f"level 2, Fn {field.froude_number:.3f}, on ½ρV², no hydrostatic part"
+    return PressureMap(vertices, faces, coefficient, note)
 
-    Raises:
-        SolverFailure: the Rankine solver gives no answer.
-    """
-    fields = solve(hull, (froude_number,), fields=True).conditions[0].fields
-    if fields is None:
-        raise ValueError("the solver was asked for fields")
-    vertices, faces, values = _smooth(fields)
-    mirrored = vertices * np.array([1.0, -1.0, 1.0])
-    shown, shown_faces = hull_view_parts(hull, "view")["underwater"]
+
+def blade_map(field: PressureField, geometry: SceneGeometry) -> PressureMap:
+    """The blades' pressure on their mesh, about the hub's centre."""
+    vertices, faces = geometry.blades
+    on_blade = field.blade >= 0
+    points = field.points - np.array(geometry.propeller_position)
     coefficient = transferred(
-        np.concatenate([vertices, mirrored]),
-        np.concatenate([faces, faces[:, ::-1] + len(vertices)]),
-        np.concatenate([values, values]),
-        shown,
-        shown_faces,
+        points, *_nodal(field, field.quads[on_blade], field.uniform_coefficient[on_blade]), vertices, faces
     )
-    note = f"level 2, Fn {froude_number:.3f}, on ½ρV², no hydrostatic part"
-    return PressureMap(shown, shown_faces, coefficient, note)
+    note = f"level 2, J {field.advance_coefficient:.3f}, on ½ρ(V<sub>A</sub>² + (0.7πnD)²)"
+    return PressureMap(vertices, faces, coefficient, note)
 
 
-def _smooth(fields: RankineFields) -> tuple[Array, NDArray[np.int64], Array]:
-    """Panels of each block as a grid whose nodes take the mean of the panels around them."""
-    vertices, faces, values = [], [], []
-    start = first = 0
-    for points, (_, along, across) in zip(block_points(fields.quads, fields.blocks), fields.blocks, strict=True):
-        panel = fields.pressure_coefficient[start : start + along * across].reshape(along, across)
-        start += along * across
-        weight = np.zeros((along + 1, across + 1))
-        total = np.zeros((along + 1, across + 1))
-        for i, j in ((0, 0), (1, 0), (1, 1), (0, 1)):
-            total[i : i + along, j : j + across] += panel
-            weight[i : i + along, j : j + across] += 1.0
-        index = np.arange(weight.size).reshape(weight.shape) + first
-        first += weight.size
-        a, b, c, d = index[:-1, :-1], index[1:, :-1], index[1:, 1:], index[:-1, 1:]
-        # u forward, v up on the port side: turned round, so that the faces look outwards
-        faces.append(np.concatenate([np.stack([a, c, b], -1).reshape(-1, 3), np.stack([a, d, c], -1).reshape(-1, 3)]))
-        vertices.append(points.reshape(-1, 3))
-        values.append((total / weight).ravel())
-    return np.concatenate(vertices), np.concatenate(faces), np.concatenate(values)
+def _nodal(field: PressureField, quads: Faces, values: Array) -> tuple[Faces, Array]:
+    """Triangles of some panels, and at every point the mean of the panels around it (0 where there is none)."""
+    count = len(field.points)
+    total = np.bincount(quads.ravel(), np.repeat(values, 4), minlength=count)
+    around = np.bincount(quads.ravel(), minlength=count)
+    faces = np.concatenate([quads[:, [0, 1, 2]], quads[:, [0, 2, 3]]])
+    return faces, total / np.maximum(around, 1)

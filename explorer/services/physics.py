@@ -13,20 +13,18 @@ from typing import Any, Generic, TypeVar
 
 import numpy as np
 
-from explorer.charts.curves import DesignCurves, HullLines
+from explorer.charts.curves import DesignCurves
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
-from hpsop_core.errors import SolverFailure
-from hpsop_core.evaluation.curves import resistance_curve
+from hpsop_core.evaluation.curves import FROUDE_STEP, HullLines, hull_lines, resistance_points, thrust_curves
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
-from hpsop_core.evaluation.shapes import design_hull
 
 Value = TypeVar("Value")
-# The classic twenty, halved towards the ends where the form changes fast, and the bulb ahead of FP.
-_STATIONS = np.array([-0.2, 0.0, 0.5, 1.0, 1.5, *range(2, 19), 18.5, 19.0, 19.5, 20.0, 20.2])
-_FROUDE_POINTS = {1: 33, 2: 9}
+# Charts end soon after the fastest condition; level 1 follows every hump of the wave resistance.
+_FROUDE_ABOVE = 0.025
+_FROUDE_STEP = {1: 0.004, 2: FROUDE_STEP}
 
 
 class Remembered(Generic[Value]):
@@ -103,34 +101,16 @@ class Physics:
         return self._curves.peek((case, evaluation.level, evaluation.variables.key()))
 
     def _compute_curves(self, case: Case, evaluation: Evaluation) -> DesignCurves:
-        if not evaluation.conditions or evaluation.hull is None or evaluation.open_water is None:
-            raise SolverFailure("curves", evaluation.reason or "the design has no numbers")
-        own = [condition.froude_number for condition in evaluation.conditions]
-        low, high = max(0.10, min(own) - 0.05), max(own) + 0.025
-        froude = np.unique(np.concatenate([np.linspace(low, high, _FROUDE_POINTS[evaluation.level]), own]))
-        points = resistance_curve(
-            case, evaluation.variables, evaluation.level, tuple(froude.tolist()), self.reference(case, evaluation.level)
-        )
-        speed = np.array([point.speed for point in points])
-        total = np.array([point.total_resistance for point in points])
-        first = evaluation.conditions[0]
-        open_water = evaluation.open_water
-        available = []
-        for condition in evaluation.conditions:
-            rate = condition.rotation_rate_rpm / 60.0
-            diameter = evaluation.variables.diameter
-            advance = speed * (1.0 - condition.wake_fraction) / (rate * diameter)
-            kt = np.interp(
-                advance, open_water.advance_coefficient, open_water.thrust_coefficient, left=np.nan, right=np.nan
-            )
-            available.append(case.constants.density * rate**2 * diameter**4 * kt)
+        reference = self.reference(case, evaluation.level)
+        points = resistance_points(case, evaluation, reference, _FROUDE_ABOVE, _FROUDE_STEP[evaluation.level])
+        thrust = thrust_curves(case, evaluation, points)
         return DesignCurves(
-            froude_number=np.array([point.froude_number for point in points]),
-            speed=speed,
-            total_resistance=total,
+            froude_number=thrust.froude_number,
+            speed=np.array([point.speed for point in points]),
+            total_resistance=np.array([point.total_resistance for point in points]),
             wave_resistance=np.array([point.wave_resistance for point in points]),
-            thrust_required=total / (1.0 - first.thrust_deduction),
-            thrust_available=tuple(available),
+            thrust_required=thrust.required,
+            thrust_available=thrust.available,
             level=evaluation.level,
         )
 
@@ -140,18 +120,4 @@ class Physics:
         Raises:
             SolverFailure: the form cannot be made.
         """
-        return self._lines.get((case, variables.key()), lambda: _hull_lines(case, variables))
-
-
-def _hull_lines(case: Case, variables: DesignVariables) -> HullLines:
-    hull = design_hull(case, variables)
-    cut = zip(_STATIONS, hull.sections(_STATIONS / 20.0 * hull.length, points=29), strict=True)
-    sections = [(float(station), tuple(line[:, 1:] for line in lines)) for station, lines in cut if lines]
-    hydrostatics = hull.hydrostatics
-    return HullLines(
-        sections=tuple(sections),
-        area_x=np.asarray(hydrostatics.sectional_area_x) / hull.length,
-        area=np.asarray(hydrostatics.sectional_area),
-        draft=hull.draft,
-        length=hull.length,
-    )
+        return self._lines.get((case, variables.key()), lambda: hull_lines(case, variables))

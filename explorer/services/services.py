@@ -9,11 +9,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from explorer.charts.curves import DesignCurves, HullLines
-from explorer.scene.blades import blade_pressure
+from explorer.charts.curves import DesignCurves
 from explorer.scene.geometry import SceneGeometry, ghost_segments, scene_geometry
-from explorer.scene.pressure import PressureMap, hull_pressure
-from explorer.scene.waves import WaveField, kelvin_waves, panel_waves
+from explorer.scene.pressure import PressureMap, blade_map, hull_map
 from explorer.server.worker import LatestWorker
 from explorer.services.physics import Physics, Remembered
 from explorer.state.draft import Draft
@@ -24,8 +22,9 @@ from explorer.state.session import AppState
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
+from hpsop_core.evaluation.curves import HullLines
+from hpsop_core.evaluation.fields import WaveField, blade_pressure, hull_pressure, waves
 from hpsop_core.evaluation.result import Evaluation
-from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.runs.executor import default_workers
 
 _PICTURE_SECONDS = 0.25
@@ -116,14 +115,7 @@ class Services:
         """
         case, condition = self.case, evaluation.conditions[index]
         key = (case, evaluation.level, evaluation.variables.key(), condition.froude_number, "waves")
-
-        def compute() -> WaveField:
-            hull = design_hull(case, evaluation.variables)
-            if evaluation.level == 2:
-                return panel_waves(hull, condition.froude_number)
-            return kelvin_waves(hull, condition.froude_number, condition.wave_calibration)
-
-        return self._waves.get(key, compute)
+        return self._waves.get(key, lambda: waves(case, evaluation, condition=index))
 
     def hull_pressure(self, evaluation: Evaluation, index: int) -> PressureMap:
         """Pressure on the hull at a condition, always by level 2.
@@ -133,9 +125,13 @@ class Services:
         """
         case, froude = self.case, evaluation.conditions[index].froude_number
         key = (case.hull, case.initial, evaluation.variables.key(), froude, "hull")
-        return self._pressure.get(key, lambda: hull_pressure(design_hull(case, evaluation.variables), froude))
 
-    def blade_pressure(self, evaluation: Evaluation, index: int) -> PressureMap | None:
+        def compute() -> PressureMap:
+            return hull_map(hull_pressure(case, evaluation, condition=index), self.geometry(evaluation.variables))
+
+        return self._pressure.get(key, compute)
+
+    def blade_pressure(self, evaluation: Evaluation, index: int) -> PressureMap:
         """Pressure on the blades at a condition's advance coefficient, always by level 2.
 
         Raises:
@@ -143,9 +139,11 @@ class Services:
         """
         case, condition = self.case, evaluation.conditions[index]
         key = (case.propeller, evaluation.variables.key(), condition.advance_coefficient, "blades")
-        return self._pressure.get(
-            key, lambda: blade_pressure(design_propeller(case, evaluation.variables), condition.advance_coefficient)
-        )
+
+        def compute() -> PressureMap:
+            return blade_map(blade_pressure(case, evaluation, condition=index), self.geometry(evaluation.variables))
+
+        return self._pressure.get(key, compute)
 
     def add_by_hand(self, evaluation: Evaluation) -> int:
         """Keep a hand-made design in the run's archive.

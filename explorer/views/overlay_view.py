@@ -74,17 +74,13 @@ class OverlayView:
         self._session.hub.changed("legend")
 
     def _waves(self, shown: Shown, index: int) -> None:
-        field = self._session.app.services.waves(shown.evaluation, index)
-        hull = shown.evaluation.hull
-        if hull is None:
-            return
-        surface = wave_surface(field, hull.draft)
+        surface = wave_surface(self._session.app.services.waves(shown.evaluation, index))
         # The few highest crests at the bow must not wash out the rest.
         reach = max(float(np.percentile(np.abs(surface.elevation), 97.0)), 0.05)
         opacity = _WATER_OPACITY * surface.opacity
         mesh = painted(surface.vertices, surface.faces, surface.elevation, (-reach, 0.0, reach), SEA, opacity)
         self._show("waves", "/waves", mesh)
-        self._session.legends["waves"] = sea_legend(reach, f"{field.note}; true scale")
+        self._session.legends["waves"] = sea_legend(reach, f"{surface.note}; true scale")
 
     def _pressure(self, shown: Shown, index: int) -> None:
         found = self._session.app.services.hull_pressure(shown.evaluation, index)
@@ -92,10 +88,7 @@ class OverlayView:
 
     def _blades(self, shown: Shown, index: int) -> None:
         found = self._session.app.services.blade_pressure(shown.evaluation, index)
-        if found is not None:
-            self._map("blades", "/ship/propeller/pressure", found, "blade pressure C<sub>p</sub> [–]")
-        else:
-            self._session.legends.pop("blades", None)
+        self._map("blades", "/ship/propeller/pressure", found, "blade pressure C<sub>p</sub> [–]")
 
     def _map(self, name: str, node: str, found: PressureMap, title: str) -> None:
         limits = around_zero(found.coefficient, found.areas())

@@ -4,6 +4,6 @@ The rooms, from the ground up: ``result`` (what an evaluation is), ``hull_answer
 the solvers, remembered apart from each other), ``shapes`` (hull and propeller of a design, V0), ``condition`` (one
 operating condition), ``physics`` (every number of a design, not normalised), ``reference`` (the initial design's, which
 normalise), ``objectives`` and ``constraints``, ``curves`` (what is drawn beyond an evaluation), ``evaluate``, which
-puts them together, and beside it what a towing tank and an open-water test are asked: ``resistance`` and
-``open_water``, of a design or of a hull or propeller at hand.
+puts them together, ``fields`` (the waves and the pressures of a design), and beside it what a towing tank and an
+open-water test are asked: ``resistance`` and ``open_water``, of a design or of a hull or propeller at hand.
 """

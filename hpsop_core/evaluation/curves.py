@@ -31,7 +31,9 @@ FROUDE_MARGIN = 0.05
 CURVE_STEP = 0.05
 """Steps of the advance coefficient in an evaluation's open-water curve."""
 
-_FROUDE_STEP = 0.01
+FROUDE_STEP = 0.01
+"""Steps of the Froude number in a resistance curve."""
+
 # The classic twenty, denser towards the ends where the form changes fast, and the bulb ahead of FP.
 _STATIONS = np.array([-0.2, 0.0, 0.5, 1.0, 1.5, *range(2, 19), 18.5, 19.0, 19.5, 20.0, 20.2])
 
@@ -76,21 +78,26 @@ def resistance_curve(
     )
 
 
-def froude_range(evaluation: Evaluation, above: float = FROUDE_MARGIN) -> tuple[float, ...]:
+def froude_range(evaluation: Evaluation, above: float = FROUDE_MARGIN, step: float = FROUDE_STEP) -> tuple[float, ...]:
     """Froude numbers, ascending, at which a design's resistance is tabulated; its conditions are among them.
 
     Args:
         evaluation: the design's.
         above: how far beyond the greatest condition.
+        step: between them.
     """
     conditions = [condition.froude_number for condition in evaluation.conditions]
     low, high = max(0.1, min(conditions) - FROUDE_MARGIN), min(0.5, max(conditions) + above)
-    steps = np.arange(np.ceil(low / _FROUDE_STEP), np.floor(high / _FROUDE_STEP) + 1) * _FROUDE_STEP
+    steps = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
     return tuple(sorted({*(round(float(value), 6) for value in steps), *conditions}))
 
 
 def resistance_points(
-    case: Case, evaluation: Evaluation, reference: Reference, above: float = FROUDE_MARGIN
+    case: Case,
+    evaluation: Evaluation,
+    reference: Reference,
+    above: float = FROUDE_MARGIN,
+    step: float = FROUDE_STEP,
 ) -> tuple[ResistancePoint, ...]:
     """Resistance over ``froude_range`` at the evaluation's level, calibrated as the evaluation was.
 
@@ -99,7 +106,8 @@ def resistance_points(
     """
     if not evaluation.conditions:
         raise SolverFailure("curves", evaluation.reason or "the design has no operating conditions")
-    return resistance_curve(case, evaluation.variables, evaluation.level, froude_range(evaluation, above), reference)
+    froude_numbers = froude_range(evaluation, above, step)
+    return resistance_curve(case, evaluation.variables, evaluation.level, froude_numbers, reference)
 
 
 @dataclass(frozen=True, eq=False)
@@ -182,12 +190,13 @@ class HullLines:
         sections: (station from 0 at AP to 20 at FP, polylines (n, 2) of y and z in m, port side).
         area_station: (n,) x/Lpp from AP.
         area: (n,) immersed sectional area in m2.
-        draft: in m.
+        length, draft: in m.
     """
 
     sections: tuple[tuple[float, tuple[Array, ...]], ...]
     area_station: Array
     area: Array
+    length: float
     draft: float
 
 
@@ -204,5 +213,6 @@ def hull_lines(case: Case, variables: DesignVariables) -> HullLines:
         sections=tuple((float(station), tuple(line[:, 1:] for line in lines)) for station, lines in cut if lines),
         area_station=np.asarray(hydrostatics.sectional_area_x) / hull.length,
         area=np.asarray(hydrostatics.sectional_area),
+        length=hull.length,
         draft=hull.draft,
     )

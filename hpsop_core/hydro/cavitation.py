@@ -46,5 +46,10 @@ def cavitation_number(
         rotation_rate: n in 1/s.
         diameter: D in m.
     """
+    return pressure_margin_pascal / section_dynamic_pressure(density, advance_speed, rotation_rate, diameter)
+
+
+def section_dynamic_pressure(density: float, advance_speed: float, rotation_rate: float, diameter: float) -> float:
+    """1/2 rho (V_A^2 + (0.7 pi n D)^2) in Pa of the 0.7 R section; arguments as for ``cavitation_number``."""
     speed_squared = advance_speed**2 + (0.7 * math.pi * rotation_rate * diameter) ** 2
-    return pressure_margin_pascal / (0.5 * density * speed_squared)
+    return 0.5 * density * speed_squared

@@ -4,9 +4,9 @@ Each cell of the hull between two stations sends its waves astern only,
 
     zeta(x, y) = 4 k0/pi int_0^inf s cos(k0 s u y) Re{ exp(-i k0 s x) F(u; x) } du,     s = sqrt(1 + u^2),
 
-x aft, F the Kochin function of the cells ahead of x (sources dY/dx, Havelock's point source superposed). Far astern F is
-that of the whole hull, and the energy of its waves is Michell's wave resistance. The near field, which decays, is left
-out. Waves shorter than a grid can carry are left out of the elevation, but not of the spectrum: it says which.
+x aft, F the Kochin function of the cells ahead of x (sources dY/dx, Havelock's point source superposed). Far astern F
+is that of the whole hull, and the energy of its waves is Michell's wave resistance. The near field, which decays, is
+left out. Waves shorter than a grid can carry are left out of the elevation, but not of the spectrum: it says which.
 Source: Havelock, Proc. Roy. Soc. A 149 (1935); Newman, Marine Hydrodynamics (1977), section 6.14.
 """
 
@@ -20,7 +20,7 @@ import numpy as np
 from hpsop_core.errors import InputError
 from hpsop_core.hydro.michell import LARGEST_TANGENT, kochin_by_cell, spectrum_resistance
 from hpsop_core.one_thread import one_blas_thread
-from hpsop_core.typing_aliases import Array, ComplexArray
+from hpsop_core.typing_aliases import Array, ComplexArray, IntArray
 
 SOLVER = "kelvin 1.0"
 # A wave of fewer cells than this, along or across, is not drawn; one of 1/0.6 as many is drawn whole.
@@ -62,7 +62,7 @@ class WaveGrid:
     @property
     def row_step(self) -> float:
         """Between the outermost rows, where they lie furthest apart, in ship lengths."""
-        return self.half_width * (1.0 - (1.0 - 1.0 / (self.rows - 1)) ** _CROWDING)
+        return float(self.half_width * (1.0 - (1.0 - 1.0 / (self.rows - 1)) ** _CROWDING))
 
 
 @dataclass(frozen=True, eq=False)
@@ -153,7 +153,7 @@ def kelvin_waves(
     rises = np.diff(half_breadth[::-1], axis=0) / length
     real, imaginary = kochin_by_cell(stations, (z - z[-1]) / length, rises, wave_number, tangent)
     # column j: the first j cells; the last one: all
-    ahead = np.zeros((len(tangent), rises.shape[0] + 1), dtype=np.complex128)
+    ahead: ComplexArray = np.zeros((len(tangent), rises.shape[0] + 1), dtype=np.complex128)
     ahead[:, 1:] = np.cumsum(real + 1j * imaginary, axis=1)
     ahead *= math.sqrt(calibration)
     # a soft end: a hard one would ring
@@ -164,8 +164,9 @@ def kelvin_waves(
     inner = np.interp(length * (1.0 - x_aft), waterline[:, 0], waterline[:, 1], left=0.0, right=0.0) / length
     spread = np.linspace(0.0, 1.0, chosen.rows) ** _CROWDING
     y = inner[:, None] + (chosen.half_width - inner[:, None]) * spread
-    passed = np.searchsorted(0.5 * (stations[1:] + stations[:-1]), x_aft)
-    elevation = _elevation(wave_number, tangent, (ahead * drawn[:, None])[drawn > 0.0], step, x_aft, y, passed)
+    passed = np.searchsorted(0.5 * (stations[1:] + stations[:-1]), x_aft).astype(np.int64)
+    shown: ComplexArray = (ahead * drawn[:, None])[drawn > 0.0]
+    elevation = _elevation(wave_number, tangent, shown, step, x_aft, y, passed)
     return KelvinWaves(
         x=np.repeat((length * (1.0 - x_aft))[:, None], chosen.rows, axis=1),
         y=y * length,
@@ -175,7 +176,7 @@ def kelvin_waves(
 
 
 def _elevation(
-    wave_number: float, tangent: Array, ahead: ComplexArray, step: float, x_aft: Array, y: Array, passed: Array
+    wave_number: float, tangent: Array, ahead: ComplexArray, step: float, x_aft: Array, y: Array, passed: IntArray
 ) -> Array:
     """zeta/Lpp (nx, ny) of the first tangents, as many as ``ahead`` has rows, by the trapezoidal rule."""
     u = tangent[: len(ahead)]
@@ -199,8 +200,8 @@ def _shortest_drawn(grid: WaveGrid, wave_number: float) -> float:
     least = min(by_columns, by_rows, LARGEST_TANGENT)
     if not least > 0.0:
         raise InputError(
-            f"wave grid: its steps of {grid.column_step:.3g} and {grid.row_step:.3g} ship lengths carry no wave at this "
-            f"Froude number ({2.0 * np.pi / wave_number:.3g} ship lengths at most); take more columns and rows"
+            f"wave grid: its steps of {grid.column_step:.3g} and {grid.row_step:.3g} ship lengths carry no wave at "
+            f"this Froude number ({2.0 * np.pi / wave_number:.3g} ship lengths at most); take more columns and rows"
         )
     return least
 

@@ -5,8 +5,8 @@ With u = tan(theta), s = sqrt(1 + u^2) and k0 = g/U^2,
     Rw = 4 rho g^2/(pi U^2) int_0^inf |F(u)|^2 sqrt(1 + u^2) du,
     F = iint dY/dx exp(k0 s^2 z + i k0 s x) dx dz     (z <= 0 below the waterline).
 
-F is the Kochin function of the hull; ``kochin_by_cell`` is the one place that computes it, for this integral and for the
-free waves that carry the resistance away (hydro/kelvin.py).
+F is the Kochin function of the hull; ``kochin_by_cell`` is the one place that computes it, for this integral and for
+the free waves that carry the resistance away (hydro/kelvin.py).
 
 Between its points the table is bilinear (tent functions) and both inner integrals are exact: in x, dY/dx is constant
 over a cell, which gives a sinc; in z, the moments of exp over a cell. The integrand is even and analytic at u = 0 and

@@ -67,3 +67,9 @@ def test_geometry_and_hydro_hold_no_case_data(path: Path) -> None:
 @pytest.mark.parametrize("path", SOURCES, ids=lambda path: str(path.relative_to(ROOT)))
 def test_a_file_is_one_thought(path: Path) -> None:
     assert len(path.read_text(encoding="utf-8").splitlines()) <= 700
+
+
+@pytest.mark.parametrize("path", sorted(ROOT.glob("explorer/**/*.py")), ids=lambda path: str(path.relative_to(ROOT)))
+def test_the_page_asks_for_answers_and_computes_none(path: Path) -> None:
+    # a solver is asked by hpsop_core.evaluation: what the page shows has then one calibration, one failure, one test
+    assert not {name for name in imported(path) if name.startswith("hpsop_core.hydro")}

@@ -33,6 +33,7 @@ class SurfacePressure:
         points: (np, 3) corners in m, propeller axes (x downstream, y to starboard, z up, blade 0 upwards).
         quads: (nq, 4) indices into points, counter-clockwise seen from the water; a triangle has two equal points.
         pressure_coefficient: (nq,) Cp on U^2 = V^2 + (omega r)^2.
+        dynamic_pressure: (nq,) U^2/2 over rho for n = R = 1, which Cp refers to.
         blade: (nq,) number of the blade, -1 on the hub.
     """
 
@@ -40,6 +41,7 @@ class SurfacePressure:
     points: Array
     quads: IntArray
     pressure_coefficient: Array
+    dynamic_pressure: Array
     blade: IntArray
 
 
@@ -57,34 +59,43 @@ def surface_pressure(result: BladePanelResult, advance_coefficient: float, all_b
         raise InputError(f"advance coefficient {advance_coefficient} must be a finite number of at least 0")
     model = result.model
     condition = model.condition(float(advance_coefficient))
-    speed = _relative_speed_squared(model.grid.surface.collocation, advance_coefficient)
-    blade_cp = (2.0 * model.blade_pressure(condition) / speed).ravel()
-    hub_cp = 2.0 * model.hub_pressure(condition) / _relative_speed_squared(model.hub.collocation, advance_coefficient)
+    blade_speed = _relative_speed_squared(model.grid.surface.collocation, advance_coefficient)
+    hub_speed = _relative_speed_squared(model.hub.collocation, advance_coefficient)
+    blade_cp = (2.0 * model.blade_pressure(condition) / blade_speed).ravel()
+    hub_cp = 2.0 * model.hub_pressure(condition) / hub_speed
     rows, strips = model.grid.surface.shape
     blade_corners = blade_grid(model.propeller, rows, strips).surface.corners
     scale = 0.5 * model.propeller.diameter
     count = model.propeller.blade_count
+    # one block of panels a time: the blade, then the hub's
+    surfaces = [(blade_corners, blade_cp, blade_speed.ravel(), True)] + [
+        (corners, hub_cp[part], hub_speed[part], False)
+        for corners, part in zip(model.hub.blocks, model.hub.block_slices, strict=True)
+    ]
     points: list[Array] = []
     quads: list[IntArray] = []
     values: list[Array] = []
+    speeds: list[Array] = []
     blades: list[IntArray] = []
     offset = 0
     for number in range(count if all_blades else 1):
-        for index, corners in enumerate((blade_corners, *model.hub.blocks)):
+        for corners, coefficient, speed, is_blade in surfaces:
             n, m = corners.shape[:2]
             place = np.arange(n * m).reshape(n, m)
             # Swapping y and z mirrors the panels, so their corners turn the other way.
             quad = np.stack([place[:-1, :-1], place[1:, :-1], place[1:, 1:], place[:-1, 1:]], axis=2).reshape(-1, 4)
             points.append(rotate_blade(scale * to_propeller_axes(corners.reshape(-1, 3)), number, count))
             quads.append(quad + offset)
-            values.append(blade_cp if index == 0 else hub_cp[model.hub.block_slices[index - 1]])
-            blades.append(np.full(quad.shape[0], number if index == 0 else -1))
+            values.append(coefficient)
+            speeds.append(speed)
+            blades.append(np.full(quad.shape[0], number if is_blade else -1))
             offset += n * m
     return SurfacePressure(
         float(advance_coefficient),
         np.concatenate(points),
         np.concatenate(quads),
         np.concatenate(values),
+        0.5 * np.concatenate(speeds),
         np.concatenate(blades),
     )
 
