@@ -11,7 +11,8 @@ import pytest
 from hpsop_core.export.offsets import offsets_csv
 from hpsop_core.geometry.hull.fit import FitSettings, Section, StationMap, fit_patch, free_net
 from hpsop_core.geometry.hull.hull import Hull, load_parent_hull, parent_hull_from_dict
-from tools.fit_dtc import DtcData, fitted_hull
+from tools.dtc_sections import DtcData
+from tools.fit_dtc import fitted_hull
 
 EDGES = {  # the profile's parts as edges of patches: (patch, v)
     "run": ("counter", 0.0), "boss_bottom": ("skeg", 0.0), "boss_top": ("skeg", 1.0), "keel": ("main", 0.0),
