@@ -14,15 +14,10 @@ from scipy.linalg import lu_factor
 from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
 from hpsop_core.hydro.blade_panels.grid import blade_grid, helical_wake
 from hpsop_core.hydro.blade_panels.hub_grid import hub_grid
+from hpsop_core.hydro.blade_panels.model import BladePanelModel, blade_panel_model, rotating_onset
 from hpsop_core.hydro.blade_panels.potential import factorise
-from hpsop_core.hydro.blade_panels.solver import (
-    WAKE_PITCH_COUNT,
-    BladePanelModel,
-    BladePanelSettings,
-    blade_panel_model,
-    rotating_onset,
-    solve,
-)
+from hpsop_core.hydro.blade_panels.settings import WAKE_PITCH_COUNT, BladePanelSettings
+from hpsop_core.hydro.blade_panels.solver import solve
 from hpsop_core.hydro.section_drag import SectionDrag
 
 

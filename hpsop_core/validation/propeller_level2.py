@@ -9,7 +9,8 @@ from functools import lru_cache
 import numpy as np
 
 from hpsop_core.geometry.propeller.propeller import Propeller, load_propeller, propeller_family
-from hpsop_core.hydro.blade_panels.solver import BladePanelResult, BladePanelSettings, forces_of, solve
+from hpsop_core.hydro.blade_panels.settings import BladePanelSettings
+from hpsop_core.hydro.blade_panels.solver import BladePanelResult, forces_of, solve
 from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.typing_aliases import Array

@@ -13,8 +13,8 @@ from dataclasses import replace
 import numpy as np
 
 from hpsop_core.geometry.propeller.propeller import Propeller, RadialTable, load_propeller, propeller_family
-from hpsop_core.hydro.blade_panels.hub_grid import HubSettings
-from hpsop_core.hydro.blade_panels.solver import BladePanelSettings, forces_of, solve
+from hpsop_core.hydro.blade_panels.settings import BladePanelSettings, HubSettings
+from hpsop_core.hydro.blade_panels.solver import forces_of, solve
 from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.lifting_line.solver import LiftingLineSettings
 from hpsop_core.hydro.open_water import OpenWater

@@ -6,7 +6,8 @@ import numpy as np
 import pytest
 
 from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
-from hpsop_core.hydro.blade_panels.solver import BladePanelSettings, solve
+from hpsop_core.hydro.blade_panels.settings import BladePanelSettings
+from hpsop_core.hydro.blade_panels.solver import solve
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.validation.propeller_level1 import MODEL_DIAMETER
 from hpsop_core.validation.propeller_level2 import experiment_points

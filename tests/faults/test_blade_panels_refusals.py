@@ -9,7 +9,8 @@ import pytest
 
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.geometry.propeller.propeller import Propeller, load_propeller, propeller_family
-from hpsop_core.hydro.blade_panels.solver import BladePanelSettings, solve
+from hpsop_core.hydro.blade_panels.settings import BladePanelSettings
+from hpsop_core.hydro.blade_panels.solver import solve
 from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
 

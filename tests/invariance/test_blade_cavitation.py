@@ -8,7 +8,8 @@ import pytest
 from hpsop_core import evaluate, load_case
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
-from hpsop_core.hydro.blade_panels.solver import BladePanelSettings, solve
+from hpsop_core.hydro.blade_panels.settings import BladePanelSettings
+from hpsop_core.hydro.blade_panels.solver import solve
 from hpsop_core.hydro.operating_point import chebyshev_nodes
 from hpsop_core.hydro.section_drag import SectionDrag
 

@@ -10,10 +10,9 @@ import pytest
 
 from hpsop_core.evaluation.propeller_answer import ADVANCE_RANGE
 from hpsop_core.geometry.propeller.propeller import Propeller, RadialTable, load_propeller, propeller_family
-from hpsop_core.hydro.blade_panels import solver as blade_panels
 from hpsop_core.hydro.blade_panels.grid import blade_grid
-from hpsop_core.hydro.blade_panels.hub_grid import HubSettings
-from hpsop_core.hydro.blade_panels.solver import BladePanelSettings, forces_of, solve
+from hpsop_core.hydro.blade_panels.settings import BladePanelSettings, HubSettings
+from hpsop_core.hydro.blade_panels.solver import forces_of, solve
 from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.hydro.singularities.dipole_panels import body_influence, panel_set
@@ -104,15 +103,12 @@ def test_forces_on_the_optimisers_grid_and_by_pressures() -> None:
 
 
 @pytest.mark.parametrize(("blades", "pitch", "area"), [(2, 1.0, 0.4), (3, 1.05, 0.607), (7, 0.95, 1.0)])
-def test_the_table_of_wakes_is_fine_enough(
-    monkeypatch: pytest.MonkeyPatch, blades: int, pitch: float, area: float
-) -> None:
+def test_the_table_of_wakes_is_fine_enough(blades: int, pitch: float, area: float) -> None:
     """Four tabulated wakes against nine; the grids are the same."""
     propeller = propeller_family(load_propeller(), 9.0, blades, pitch, area)
     advance, drag = [0.1, 0.3, 0.5, 0.7, 0.9, 1.1], SectionDrag.full_scale()
     usual = solve(propeller, advance, drag).open_water
-    monkeypatch.setattr(blade_panels, "WAKE_PITCH_COUNT", 9)
-    many = solve(propeller, advance, drag).open_water
+    many = solve(propeller, advance, drag, BladePanelSettings(wake_pitch_count=9)).open_water
     # a fifth of what the optimiser's grid may be off
     np.testing.assert_allclose(usual.thrust_coefficient, many.thrust_coefficient, rtol=0.002)
     np.testing.assert_allclose(usual.torque_coefficient, many.torque_coefficient, rtol=0.002)

@@ -16,8 +16,8 @@ from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_fa
 from hpsop_core.geometry.propeller.surface import rotate_blade
 from hpsop_core.hydro.blade_panels.forces import OMEGA
 from hpsop_core.hydro.blade_panels.grid import helical_wake, to_propeller_axes
-from hpsop_core.hydro.blade_panels.hub_grid import HubSettings
-from hpsop_core.hydro.blade_panels.solver import BladePanelResult, BladePanelSettings, forces_of, solve
+from hpsop_core.hydro.blade_panels.settings import BladePanelSettings, HubSettings
+from hpsop_core.hydro.blade_panels.solver import BladePanelResult, forces_of, solve
 from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.report.figures import pyplot

@@ -1,7 +1,7 @@
 """Panels on one propeller blade and its wake.
 
 Solver axes: lengths in tip radii (R = 1), x downstream, a point at (r, theta) is (x, r cos theta, r sin theta) with
-theta in the sense of rotation. They mirror the propeller axes of `geometry.propeller_surface` (y and z are swapped);
+theta in the sense of rotation. They mirror the propeller axes of `geometry.propeller.surface` (y and z are swapped);
 `to_propeller_axes` goes back.
 
 Blade: corners[i, j], i from the trailing edge along the face (pressure side) to the leading edge and back along the
@@ -20,6 +20,7 @@ import numpy as np
 from hpsop_core.geometry.propeller.propeller import BladeSections, Propeller
 from hpsop_core.geometry.propeller.sections import cosine_chord_fractions
 from hpsop_core.geometry.propeller.surface import blade_cylindrical
+from hpsop_core.hydro.blade_panels.settings import WakeSettings
 from hpsop_core.hydro.singularities.dipole_panels import PanelSet, panel_set
 from hpsop_core.typing_aliases import Array, IntArray
 
@@ -156,18 +157,6 @@ def _section_outline(sections: BladeSections, thickness_factor: Array | float, p
     x = np.concatenate([x_face[:, ::-1], x_back[:, 1:]], axis=1).T
     theta = np.concatenate([theta_face[:, ::-1], theta_back[:, 1:]], axis=1).T
     return np.ascontiguousarray(x, dtype=np.float64), np.ascontiguousarray(theta, dtype=np.float64)
-
-
-@dataclass(frozen=True)
-class WakeSettings:
-    """The helical wake: `revolutions` turns, steps of `first_step_degrees` that grow by `growth` each.
-
-    For KT of P4119 at J = 0.7 a first step of 10 degrees counts -0.6 %, an end after two turns 0.4 %.
-    """
-
-    revolutions: float = 3.0
-    first_step_degrees: float = 4.0
-    growth: float = 1.08
 
 
 def wake_angles(settings: WakeSettings) -> Array:

@@ -17,31 +17,9 @@ import numpy as np
 
 from hpsop_core.errors import SolverFailure
 from hpsop_core.hydro.blade_panels.grid import STAGE, BladeGrid, bilinear_points, grid_quadrilaterals, to_cartesian
+from hpsop_core.hydro.blade_panels.settings import HubSettings
 from hpsop_core.hydro.singularities.dipole_panels import PanelSet, panel_set
 from hpsop_core.typing_aliases import Array, IntArray
-
-
-@dataclass(frozen=True)
-class HubSettings:
-    """How the hub is panelled; lengths in tip radii.
-
-    Attributes:
-        rows_cylinder: panels on the cylinder before and behind the root, each.
-        rows_end: panels on each rounded end.
-        panels_round: panels round the whole hub, shared by the blades (at least four a sector).
-        cylinder_ahead, cylinder_behind: the cylinder beyond the lines that lean out from the root. A boss of 3 R
-            each way would raise KT of P4119 by 1.8 % at J = 0.7; end_length: of the rounded ends.
-        lean: how far the lines from the root's edges lean forward and aft, over what lines square to the chord lean;
-            above one, or the lines would run into the round leading edge.
-    """
-
-    rows_cylinder: int = 3
-    rows_end: int = 4
-    panels_round: int = 18
-    cylinder_ahead: float = 0.1
-    cylinder_behind: float = 0.2
-    end_length: float = 0.4
-    lean: float = 1.3
 
 
 @dataclass(frozen=True)

@@ -6,6 +6,7 @@ Cp = (p - p_inf)/(rho/2 U^2) with U^2 = V^2 + (omega r)^2, the undisturbed relat
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -14,7 +15,7 @@ from hpsop_core.errors import InputError
 from hpsop_core.geometry.propeller.surface import rotate_blade
 from hpsop_core.hydro.blade_panels.forces import OMEGA
 from hpsop_core.hydro.blade_panels.grid import blade_grid, to_propeller_axes
-from hpsop_core.hydro.blade_panels.solver import BladePanelResult
+from hpsop_core.hydro.blade_panels.model import BladePanelModel, FlowCondition
 from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array, IntArray
 
@@ -46,7 +47,7 @@ class SurfacePressure:
 
 
 @one_blas_thread()
-def surface_pressure(result: BladePanelResult, advance_coefficient: float, all_blades: bool = True) -> SurfacePressure:
+def surface_pressure(model: BladePanelModel, advance_coefficient: float, all_blades: bool = True) -> SurfacePressure:
     """Cp on the blades (one or all) and on the hub (one sector or all) at any J.
 
     The surface drawn is the true one, also where a viscous camber factor was used to compute the pressures.
@@ -57,7 +58,6 @@ def surface_pressure(result: BladePanelResult, advance_coefficient: float, all_b
     """
     if not (np.isfinite(advance_coefficient) and advance_coefficient >= 0.0):
         raise InputError(f"advance coefficient {advance_coefficient} must be a finite number of at least 0")
-    model = result.model
     condition = model.condition(float(advance_coefficient))
     blade_speed = _relative_speed_squared(model.grid.surface.collocation, advance_coefficient)
     hub_speed = _relative_speed_squared(model.hub.collocation, advance_coefficient)
@@ -144,13 +144,12 @@ class BladePressureTable:
     hub_ratio: float
 
     @classmethod
-    def of(cls, result: BladePanelResult) -> BladePressureTable:
-        """At the advance coefficients of a result."""
-        model = result.model
+    def of(cls, model: BladePanelModel, conditions: Sequence[FlowCondition]) -> BladePressureTable:
+        """At the advance coefficients of solved conditions."""
         surface = model.grid.surface
         return cls(
-            result.open_water.advance_coefficient,
-            np.stack([model.blade_pressure(condition) for condition in result.conditions]),
+            np.array([condition.advance_coefficient for condition in conditions]),
+            np.stack([model.blade_pressure(condition) for condition in conditions]),
             np.hypot(surface.collocation[..., 1], surface.collocation[..., 2]),
             model.grid.radius_middle,
             surface.panels.moments[:, 0].reshape(surface.shape),
