@@ -282,8 +282,8 @@ def blade_pressure(
     case: Case, design: Design = None, *, condition: int = 0, reference: Reference | None = None
 ) -> PressureField:
     """The blades' and the hub's alone: as ``pressures``."""
-    from hpsop_core.hydro.blade_panels.pressure import surface_pressure
-    from hpsop_core.hydro.blade_panels.solver import BladePanelSettings, solve
+    from hpsop_core.hydro.blade_panels.settings import BladePanelSettings
+    from hpsop_core.hydro.blade_panels.solver import solve
 
     variables, point = _at_condition(case, design, None, condition, reference)
     propeller = design_propeller(case, variables)
@@ -294,7 +294,7 @@ def blade_pressure(
         SectionDrag.full_scale(case.constants.propeller_roughness),
         BladePanelSettings(chordwise_panels=_CHORDWISE_PANELS, radial_panels=_RADIAL_PANELS),
     )
-    found = surface_pressure(result, advance)
+    found = result.surface_pressure(advance)
     placement = propeller_placement(design_hull(case, variables), propeller)
     density, rate = case.constants.density, point.rotation_rate_rpm / 60.0
     return PressureField(
