@@ -76,7 +76,7 @@ def streamed(
 def serve(folder: Path, port: int) -> None:
     """The page on the recommended case, whose Start streams."""
     from explorer.app import Explorer
-    from explorer.state.session import run_keeper
+    from explorer.services import run_keeper
     from hpsop_core.evaluation.evaluate import evaluate
     from hpsop_core.evaluation.reference import Reference, reference_for
     from hpsop_core.runs.tasks import Physics
@@ -100,7 +100,7 @@ def drag(explorer: Any) -> None:
     slider = next(widget for widget in widgets if isinstance(widget, viser.GuiSliderHandle) and widget.label == "L/B")
     answers: list[object] = []
     geometries: list[object] = []
-    select, geometry = session.select, explorer.services.geometry
+    select, geometry = session.select, explorer.services.designs.geometry
 
     def counted_select(shown: Any) -> None:
         answers.append(shown)
@@ -110,7 +110,7 @@ def drag(explorer: Any) -> None:
         geometries.append(variables)
         return geometry(variables)
 
-    session.select, explorer.services.geometry = counted_select, counted_geometry
+    session.select, explorer.services.designs.geometry = counted_select, counted_geometry
     busy = time.process_time()
     for step in range(100):
         slider._impl.value = 7.0 + 0.01 * abs((step % 60) - 30) + 1e-4 * step
@@ -119,7 +119,7 @@ def drag(explorer: Any) -> None:
         time.sleep(0.05)
     busy = time.process_time() - busy
     session.worker.wait_until_idle(10.0)
-    session.select, explorer.services.geometry = select, geometry
+    session.select, explorer.services.designs.geometry = select, geometry
     print(
         f"what-if at 20 moves a second: {len(answers) / 5.0:.0f} answers and {len(geometries) / 5.0:.0f} geometries a "
         f"second, {1e3 * busy / max(len(answers), 1):.0f} ms of processor time each",

@@ -24,11 +24,13 @@ import viser
 from explorer.layout import build_session, build_shared
 from explorer.server.security import free_port, secure_server
 from explorer.server.worker import LatestWorker
-from explorer.services.services import Services
+from explorer.services.library import RunLibrary, runs_folder
+from explorer.services.services import open_services
+from explorer.state.app_state import AppState
 from explorer.state.draft import Draft
-from explorer.state.library import RunLibrary, runs_folder
+from explorer.state.hub import Hub
 from explorer.state.run_picture import RunPicture
-from explorer.state.session import AppState, Hub, Session
+from explorer.state.session import Session
 from hpsop_core.assets import asset_path
 from hpsop_core.case.case import DEFAULT_CASE, Case, load_case
 from hpsop_core.errors import HpsopError, InputError
@@ -74,19 +76,18 @@ class Explorer:
             with contextlib.suppress(InputError):
                 case = draft.case()
         worker = LatestWorker("shared")
-        self.services = Services(RunLibrary(self.folder), draft, workers)
-        self.state = AppState(draft, worker, Hub(worker), RunPicture("", case), self.services)
-        self.services.attach(self.state)
-        self.state.memory = remembered(self.folder)["browsers"]
+        browsers = remembered(self.folder)["browsers"]
+        self.state = AppState(draft, worker, Hub(worker), RunPicture("", case), memory=browsers)
+        self.services = open_services(self.state, RunLibrary(self.folder), workers)
         if run is not None:
-            self.services.open(run, read_only)
+            self.services.runs.open(run, read_only)
         self.server = secure_server(host, port, "hpsop")
-        self.state.hub.on(("draft",), self.services.draft_changed)
+        self.state.hub.on(("draft",), self.services.runs.draft_changed)
         self.state.on_remember = lambda: worker.latest("memory", self._save_memory)
         # the run on display and the settings come back too
         self.state.hub.on(("draft", "library"), self._save_memory)
         self._gone = threading.Event()
-        self.settings = build_shared(self.state, self.server)
+        self.settings = build_shared(self.state, self.services, self.server)
         self.server.on_client_connect(self._connect)
         self.server.on_client_disconnect(self._disconnect)
         # The initial design stands ready when the first browser asks.
@@ -98,7 +99,7 @@ class Explorer:
 
     def _warm_up(self) -> None:
         try:
-            self.services.initial(self.state.picture.current_level)
+            self.services.designs.first()
         except HpsopError as error:
             logging.getLogger("hpsop.explorer").error("the initial design cannot be computed: %s", error)
 
@@ -109,14 +110,12 @@ class Explorer:
                 client.add_notification(title, body, auto_close_seconds=8.0, color=colors.get(color, (90, 90, 90)))
 
         session = Session(self.state, client.client_id, notify)
-        with self.state.lock:
-            self.state.sessions[client.client_id] = session
-        build_session(session, client)
+        self.state.join(client.client_id, session)
+        build_session(session, self.services, client)
         self.state.tell_all("people")
 
     def _disconnect(self, client: viser.ClientHandle) -> None:
-        with self.state.lock:
-            session = self.state.sessions.pop(client.client_id, None)
+        session = self.state.leave(client.client_id)
         if session is not None:
             session.close()
         self.state.tell_all("people")
@@ -144,7 +143,7 @@ class Explorer:
     def close(self) -> None:
         """End the run (its file keeps everything) and the server; no process stays behind."""
         self._gone.set()
-        self.services.close()
+        self.services.runs.close()
         # viser says goodbye on standard output, which is ours
         with contextlib.suppress(RuntimeError), contextlib.redirect_stdout(io.StringIO()):
             self.server.stop()

@@ -8,15 +8,21 @@ import viser
 
 from explorer.server.bridge import Bridge, PageEvent
 from explorer.server.guard import guard
-from explorer.state.session import LEFT_DOCK, AppState, Session
+from explorer.server.html_slot import Slot
+from explorer.services.services import Services
+from explorer.state.app_state import AppState
+from explorer.state.session import LEFT_DOCK, Session
 from explorer.views.chart_tabs import chart_tabs
 from explorer.views.charts_view import ChartsView
 from explorer.views.compare_view import CompareView
 from explorer.views.design_view import DesignView
 from explorer.views.library_view import LibraryView
+from explorer.views.on_display import select_first
 from explorer.views.overlay_view import OverlayView
 from explorer.views.parallel_view import ParallelBrushes
-from explorer.views.pareto_view import ParetoView
+from explorer.views.pareto.chart import ParetoChart
+from explorer.views.pareto.picking import ParetoPicking
+from explorer.views.pareto.scrubber import Scrubber
 from explorer.views.run_control import RunControl
 from explorer.views.run_view import RunView
 from explorer.views.scene_view import SceneView
@@ -28,7 +34,7 @@ from hpsop_core.errors import HpsopError
 _BRAND = (25, 113, 194)
 
 
-def build_shared(app: AppState, server: viser.ViserServer) -> SettingsView:
+def build_shared(app: AppState, services: Services, server: viser.ViserServer) -> SettingsView:
     """The left dock: one for all browsers."""
     gui = server.gui
     gui.configure_theme(show_logo=False, show_share_button=False, brand_color=_BRAND)
@@ -42,27 +48,27 @@ def build_shared(app: AppState, server: viser.ViserServer) -> SettingsView:
         if client is None:
             return
         try:
-            case = app.draft.case()
+            case = app.drafted()
         except HpsopError as error:
             app.refuse(client.client_id, str(error))
             return
         client.send_file_download(f"{case.name}.toml", case.to_toml().encode(), save_immediately=True)
 
-    RunView(app, gui)
+    RunView(app, services.runs, gui)
     tabs = gui.add_tab_group()
     space = tabs.add_tab("Design space")
     case_tab = tabs.add_tab("Case")
     runs = tabs.add_tab("Runs")
-    settings = SettingsView(app, gui, space, case_tab, save)
+    settings = SettingsView(app, services.runs, gui, space, case_tab, save)
     with runs:
-        LibraryView(app, gui)
+        LibraryView(app, services.runs, gui)
     guard(gui, app.refuse)
     return settings
 
 
-def build_session(session: Session, client: viser.ClientHandle) -> None:
+def build_session(session: Session, services: Services, client: viser.ClientHandle) -> None:
     """The right dock and the 3D view of one browser."""
-    gui = client.gui
+    gui, designs = client.gui, services.designs
     guard(gui, session.app.refuse)
     with client.atomic():
         top = gui.add_panel()
@@ -74,38 +80,37 @@ def build_session(session: Session, client: viser.ClientHandle) -> None:
             bottom.add_tab(title) for title in ("Design", "Charts", "Compare", "What-if")
         )
         bottom.dock_below(top)
-        RunControl(session)
+        RunControl(session, services.runs)
         ParallelBrushes(session)
         with pareto:
-            Bridge(gui, session.receive)
-            ParetoView(session, gui)
-            ToolbarView(session, gui, client)
+            Bridge(gui, session.gestures.receive)
+            chart = ParetoChart(session, designs, gui)
+            Scrubber(session, gui)
+            ParetoPicking(session, designs, chart, gui)
+            ToolbarView(session, designs, gui, client)
         with design:
-            DesignView(session, gui)
+            DesignView(session, designs, gui)
         with charts:
-            ChartsView(session, gui, chart_tabs())
+            ChartsView(session, designs, gui, chart_tabs())
         with compare:
-            CompareView(session, gui)
+            CompareView(session, designs, gui)
         with whatif:
-            WhatIfView(session, gui)
+            WhatIfView(session, services, gui)
         with pareto:
-            you = gui.add_html("")
-    SceneView(session, client)
-    OverlayView(session, client)
+            you = Slot(gui)
+    SceneView(session, designs, client)
+    OverlayView(session, designs, client)
 
     def hello(event: PageEvent) -> None:
-        _resize(session, event)
+        session.resize(event.numbers.get("width"), event.numbers.get("height"))
         top.set_width(session.dock_width)
-        app = session.app
-        session.browser = event.browser[:64]
-        saved = app.memory.get(session.browser)
-        app.greet(session)
-        you.content = f'<style>[data-person="{session.number}"]::after{{content:" (you)"}}</style>'
+        session.greet(event.browser)
+        you.show(f'<style>[data-person="{session.number}"]::after{{content:" (you)"}}</style>')
+        saved = session.app.memory.get(session.browser)
         if saved is not None:
-            session.restore(saved)
-        if session.selected is None:
-            session.select_initial()
-        app.remember(session)
+            session.restore(saved, designs.again)
+        select_first(session, designs)
+        session.remember()
         theme()
 
     def theme() -> None:
@@ -113,21 +118,14 @@ def build_session(session: Session, client: viser.ClientHandle) -> None:
             show_logo=False, show_share_button=False, brand_color=_BRAND, dark_mode=session.options.dark
         )
 
-    session.handle("hello", "", hello)
+    session.gestures.on("hello", "", hello)
 
     def size(event: PageEvent) -> None:
         before = session.dock_width
-        _resize(session, event)
+        session.resize(event.numbers.get("width"), event.numbers.get("height"))
         if session.dock_width != before:
             top.set_width(session.dock_width)
 
-    session.handle("size", "", size)
+    session.gestures.on("size", "", size)
     session.hub.on(("options",), theme)
-    session.worker.latest("first selection", lambda: session.selected or session.select_initial())
-
-
-def _resize(session: Session, event: PageEvent) -> None:
-    width, height = event.numbers.get("width"), event.numbers.get("height")
-    if width is not None and height is not None and 100 <= width <= 20000 and 100 <= height <= 20000:
-        session.size = (int(width), int(height))
-        session.hub.changed("size")
+    session.worker.latest("first selection", lambda: select_first(session, designs))

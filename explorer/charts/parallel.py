@@ -58,7 +58,7 @@ def parallel_chart(
     selected_row = picture.row(selected) if selected is not None else None
     for group, css in ((rows, "archive"), (front_rows, f"level{newest.level if newest else 1}")):
         for row in group:
-            points = []
+            points: list[str] = []
             for index, (_, values) in enumerate(axes):
                 value = values[row] if values is not None else np.nan
                 if not np.isfinite(value):

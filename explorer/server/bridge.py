@@ -14,12 +14,15 @@ from __future__ import annotations
 import html
 import json
 import math
+import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from importlib.resources import files
 from typing import Any
 
 import viser
+
+from explorer.server.html_slot import Slot
 
 PAGE_VERSION = "1"
 _MAX_MESSAGE = 6000
@@ -99,28 +102,32 @@ class Bridge:
 
     Args:
         gui: where the hidden elements go: a container of this client that is always mounted.
-        receive: called with every event, in order, from one of viser's threads.
+        receive: called with every event, once and in order, from one of viser's threads; must not block.
     """
 
     def __init__(self, gui: viser.GuiApi, receive: Callable[[PageEvent], None]) -> None:
         self._receive = receive
         self._seen = 0
+        # viser calls from a pool of threads: two may bring texts that hold the same events
+        self._lock = threading.Lock()
         self._channel = gui.add_text("hpsop channel", "")
         uuid = self._channel._impl.uuid
         script = html.escape(f"({_asset('page.js')})('{PAGE_VERSION}'); window.hpsop.connect('{uuid}')", quote=True)
         hide_row = f'div:has(> div > * > * > label[for="{uuid}"]){{display:none!important}}'
-        gui.add_html(
+        Slot(
+            gui,
             f'<div class="hpsop-root"></div><style>{_asset("page.css")}\n{hide_row}</style>'
-            f'<img alt="" style="display:none" src="data:," onerror="{script}">'
+            f'<img alt="" style="display:none" src="data:," onerror="{script}">',
         )
         self._channel.on_update(self._on_update)
 
     def _on_update(self, event: viser.GuiEvent[Any]) -> None:
         if event.client_id is None:
             return
-        events, self._seen = parse_events(self._channel.value, self._seen)
-        for item in events:
-            self._receive(item)
+        with self._lock:
+            events, self._seen = parse_events(self._channel.value, self._seen)
+            for item in events:
+                self._receive(item)
 
 
 def overlay(name: str, content: str) -> str:

@@ -83,13 +83,13 @@ def secure_server(host: str, port: int, label: str, origins: Sequence[str] | Non
         settings["process_request"] = _unframed(settings.get("process_request"))
         return serve(*arguments, **settings)
 
-    websocket_server.serve = guarded_serve  # type: ignore[assignment]
+    websocket_server.serve = guarded_serve  # type: ignore[assignment, misc]
     try:
         # viser prints a banner of its own; the address is ours to print, once.
         with contextlib.redirect_stdout(io.StringIO()):
             server = viser.ViserServer(host=host, port=port, label=label, verbose=False)
     finally:
-        websocket_server.serve = serve
+        websocket_server.serve = serve  # type: ignore[misc]
     if server.get_port() != port:
         server.stop()
         raise InputError(f"--port {port}: taken by another program a moment ago; start again")

@@ -99,7 +99,8 @@ class RunPicture:
             return np.zeros(0, dtype=np.int64)
         wanted = np.asarray(design_ids, dtype=np.int64)
         at = np.clip(np.searchsorted(self.ids, wanted), 0, len(self.ids) - 1)
-        return at[self.ids[at] == wanted]
+        found: NDArray[np.int64] = at[self.ids[at] == wanted]
+        return found
 
     def generation_at(self, number: int | None) -> GenerationPicture | None:
         """Generation ``number``, or the newest for None."""

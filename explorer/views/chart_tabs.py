@@ -16,80 +16,82 @@ from explorer.charts.curves import (
 )
 from explorer.charts.drivers import drivers_table
 from explorer.charts.parallel import parallel_chart
+from explorer.services.designs import Designs
 from explorer.state.session import Session
-from explorer.views.charts_view import ChartTab, on_display
+from explorer.views.charts_view import ChartTab
+from explorer.views.on_display import overlaid
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import escape
-from hpsop_core.quantities import VARIABLES, all_quantities
 
 
 def _height(session: Session, share: float, least: float = 215.0, most: float = 330.0) -> float:
     return min(max(share * session.size[1], least), most)
 
 
-def _open_water(session: Session) -> str:
-    designs = [(series, shown.evaluation) for series, shown in on_display(session)]
-    return open_water_chart(designs, session.chart_width, _height(session, 0.30))
+def _open_water(session: Session, designs: Designs) -> str:
+    curves = [(series, shown.evaluation) for series, shown in overlaid(session, designs)]
+    return open_water_chart(curves, session.chart_width, _height(session, 0.30))
 
 
-def _with_curves(session: Session) -> list[tuple[Series, Evaluation, DesignCurves]]:
+def _with_curves(session: Session, designs: Designs) -> list[tuple[Series, Evaluation, DesignCurves]]:
     found = []
     missing = False
-    for series, shown in on_display(session):
-        curves = session.app.services.known_curves(shown.evaluation)
+    for series, shown in overlaid(session, designs):
+        curves = designs.known_curves(shown.evaluation)
         if curves is not None:
             found.append((series, shown.evaluation, curves))
         else:
             missing = missing or shown.evaluation.ok
     if missing:
         # one waiting task, however many designs are walked through meanwhile
-        session.slow.latest("curves", lambda: _compute_curves(session))
+        session.slow.latest("curves", lambda: _compute_curves(session, designs))
     return found
 
 
-def _compute_curves(session: Session) -> None:
+def _compute_curves(session: Session, designs: Designs) -> None:
     """The first curves that are missing of what is on display now, the selected design's before the others'."""
-    for _, shown in reversed(on_display(session)):
-        if shown.evaluation.ok and session.app.services.known_curves(shown.evaluation) is None:
-            session.app.services.curves(shown.evaluation)
+    for _, shown in reversed(overlaid(session, designs)):
+        if shown.evaluation.ok and designs.known_curves(shown.evaluation) is None:
+            designs.curves(shown.evaluation)
             # drawing them asks for the next ones
-            session.hub.changed("curves")
+            session.curves_ready()
             return
 
 
-def _resistance(session: Session) -> str:
-    designs = _with_curves(session)
+def _resistance(session: Session, designs: Designs) -> str:
+    curves = _with_curves(session, designs)
     height = _height(session, 0.24, 190.0, 260.0)
     level = session.selected.evaluation.level if session.selected else 1
-    waiting = "" if len(designs) == len(on_display(session)) else " The other designs' curves are being computed …"
+    complete = len(curves) == len(overlaid(session, designs))
+    waiting = "" if complete else " The other designs' curves are being computed …"
     note = f'<p class="soft">Level {level}, each at its own Froude number; marks are the conditions.{waiting}</p>'
     return (
-        resistance_chart(designs, "total", session.chart_width, height)
-        + resistance_chart(designs, "wave", session.chart_width, height)
+        resistance_chart(curves, "total", session.chart_width, height)
+        + resistance_chart(curves, "wave", session.chart_width, height)
         + note
     )
 
 
-def _thrust(session: Session) -> str:
-    return thrust_chart(_with_curves(session), session.chart_width, _height(session, 0.30))
+def _thrust(session: Session, designs: Designs) -> str:
+    return thrust_chart(_with_curves(session, designs), session.chart_width, _height(session, 0.30))
 
 
-def _with_lines(session: Session) -> list[tuple[Series, HullLines]]:
+def _with_lines(session: Session, designs: Designs) -> list[tuple[Series, HullLines]]:
     return [
-        (series, session.app.services.lines(shown.evaluation.variables))
-        for series, shown in on_display(session)
+        (series, designs.lines(shown.evaluation.variables))
+        for series, shown in overlaid(session, designs)
         if shown.evaluation.hull is not None
     ]
 
 
-def _lines(session: Session) -> str:
-    lines = _with_lines(session)
+def _lines(session: Session, designs: Designs) -> str:
+    lines = _with_lines(session, designs)
     return body_plan(lines, session.chart_width, _height(session, 0.31, 220.0, 330.0)) + sectional_area_chart(
         lines, session.chart_width, _height(session, 0.24, 180.0, 240.0)
     )
 
 
-def _parallel(session: Session) -> str:
+def _parallel(session: Session, _designs: Designs) -> str:
     return parallel_chart(
         session.picture,
         session.filters,
@@ -100,11 +102,11 @@ def _parallel(session: Session) -> str:
     )
 
 
-def _drivers(session: Session) -> str:
+def _drivers(session: Session, _designs: Designs) -> str:
     return drivers_table(session.picture)
 
 
-def _convergence(session: Session) -> str:
+def _convergence(session: Session, _designs: Designs) -> str:
     picture = session.picture
     numbers = [item.number for item in picture.generations]
     levels = [item.level for item in picture.generations]
@@ -122,7 +124,7 @@ def _convergence(session: Session) -> str:
     )
 
 
-def _failures(session: Session) -> str:
+def _failures(session: Session, designs: Designs) -> str:
     picture = session.picture
     ids = [int(value) for value in picture.ids[picture.failed]]
     if not ids:
@@ -132,7 +134,7 @@ def _failures(session: Session) -> str:
         )
     rows = ["<tr><th>design</th><th>level</th><th>gen.</th><th>stage</th><th>reason</th></tr>"]
     for design_id in ids[-100:][::-1]:
-        shown = session.app.shown(design_id)
+        shown = designs.shown(design_id)
         if shown is None:
             continue
         evaluation = shown.evaluation
@@ -162,8 +164,3 @@ _TABS = (
 def chart_tabs() -> dict[str, ChartTab]:
     """All charts by name, in order."""
     return {tab.name: tab for tab in _TABS}
-
-
-def table_columns(froude_numbers: tuple[float, ...]) -> tuple[str, ...]:
-    """Quantities kept for every design of a run, for parallel coordinates, filters and correlations."""
-    return tuple(quantity.key for quantity in (*VARIABLES, *all_quantities(froude_numbers)))

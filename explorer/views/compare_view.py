@@ -5,9 +5,10 @@ from __future__ import annotations
 import viser
 
 from explorer.server.bridge import PageEvent
+from explorer.server.html_slot import Slot
+from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.views.chips import box, chip, chips
-from explorer.views.slot import Slot
 from explorer.views.tables import many_table
 from hpsop_core.markup import escape
 
@@ -15,13 +16,14 @@ from hpsop_core.markup import escape
 class CompareView:
     """All numbers of the pinned designs with their difference to the initial design."""
 
-    def __init__(self, session: Session, gui: viser.GuiApi) -> None:
+    def __init__(self, session: Session, designs: Designs, gui: viser.GuiApi) -> None:
         self._session = session
+        self._designs = designs
         self._html = Slot(gui)
         session.hub.on(("pins", "options", "selection"), self.draw)
-        session.handle("act", "unpin", self._unpin)
-        session.handle("act", "ghost_pin", self._ghost)
-        session.handle("act", "show_pin", self._show)
+        session.gestures.on("act", "unpin", self._unpin)
+        session.gestures.on("act", "ghost_pin", self._ghost)
+        session.gestures.on("act", "show_pin", self._show)
         self.draw()
 
     def draw(self) -> None:
@@ -55,7 +57,7 @@ class CompareView:
                 '<p class="soft">Levels differ: each is compared with the initial design at its own level; the '
                 f"column “initial” is level {session.pins[-1].evaluation.level}.</p>"
             )
-        initials = {level: session.app.initial_shown(level) for level in levels}
+        initials = {level: self._designs.initial(level) for level in levels}
         table = many_table(initials, session.pins, session.picture.case.conditions.froude_numbers)
         self._html.show(box("".join(rows) + table))
 

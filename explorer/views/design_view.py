@@ -5,21 +5,24 @@ from __future__ import annotations
 import viser
 
 from explorer.server.bridge import PageEvent
+from explorer.server.html_slot import Slot
+from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.views.chips import box, chip, chips
-from explorer.views.slot import Slot
+from explorer.views.on_display import select_design
 from explorer.views.tables import comparison_table, headline, warnings_html
 
 
 class DesignView:
     """Headline, choices, and the table initial / selected / change."""
 
-    def __init__(self, session: Session, gui: viser.GuiApi) -> None:
+    def __init__(self, session: Session, designs: Designs, gui: viser.GuiApi) -> None:
         self._session = session
+        self._designs = designs
         self._html = Slot(gui)
         session.hub.on(("selection", "pins", "run"), self.draw)
-        session.handle("act", "choose", self._choose)
-        session.handle("act", "pin", self._pin)
+        session.gestures.on("act", "choose", self._choose)
+        session.gestures.on("act", "pin", self._pin)
         self._last: tuple[object, ...] = ()
         self.draw()
 
@@ -56,7 +59,7 @@ class DesignView:
             '<span class="gap"></span>',
             chip("pin", "pinned" if pinned else "pin", on=pinned, hint="keep this design side by side (at most four)"),
         )
-        initial = session.app.initial_shown(shown.evaluation.level)
+        initial = self._designs.initial(shown.evaluation.level)
         table = comparison_table(initial, shown, session.picture.case.conditions.froude_numbers)
         self._html.show(
             box(
@@ -68,11 +71,11 @@ class DesignView:
     def _choose(self, event: PageEvent) -> None:
         picture = self._session.picture
         if event.arg == "initial":
-            self._session.select_initial()
+            self._session.select(self._designs.first())
         elif event.arg == "compromise" and picture.compromise is not None:
-            self._session.select_id(picture.compromise)
+            select_design(self._session, self._designs, picture.compromise)
         elif event.arg == "knee" and picture.knee is not None:
-            self._session.select_id(picture.knee)
+            select_design(self._session, self._designs, picture.knee)
 
     def _pin(self, _event: PageEvent) -> None:
         if self._session.selected is not None:

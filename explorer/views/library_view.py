@@ -6,29 +6,30 @@ import time
 
 import viser
 
-from explorer.state.session import AppState
+from explorer.server.html_slot import Slot
+from explorer.services.runs import Runs
+from explorer.state.app_state import AppState
 from explorer.views.chips import box, chip, chips
-from explorer.views.slot import Slot
 from hpsop_core.markup import escape
 
 
 class LibraryView:
     """One row for each run in the user's folder, newest first."""
 
-    def __init__(self, app: AppState, gui: viser.GuiApi) -> None:
+    def __init__(self, app: AppState, runs: Runs, gui: viser.GuiApi) -> None:
         self._app = app
+        self._runs = runs
         self._html = Slot(gui)
         app.hub.on(("library",), self.draw)
         self.draw()
 
     def draw(self) -> None:
         """Draw everything again."""
-        services = self._app.services
         rows = []
-        for entry in services.library():
+        for entry in self._runs.library():
             current = entry.name == self._app.picture.name
             age = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.modified))
-            if services.asked_to_delete == entry.name:
+            if self._app.asked_to_delete == entry.name:
                 buttons = chips(
                     '<span class="bad">Delete this run for good?</span><span class="gap"></span>',
                     chip("delete_yes", "delete", entry.name, css="danger"),
@@ -48,5 +49,5 @@ class LibraryView:
                 f"{age} · {escape(entry.name)}</span>{buttons}</div>"
             )
         empty = '<p class="soft">No runs yet. Each run is saved by itself and stands here.</p>'
-        where = f'<p class="soft">Folder: {escape(services.folder_text())}</p>'
+        where = f'<p class="soft">Folder: {escape(self._runs.folder_text())}</p>'
         self._html.show(box((f'<div class="rows">{"".join(rows)}</div>' if rows else empty) + where))

@@ -12,7 +12,9 @@ import viser
 from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, pressure_legend, sea_legend
 from explorer.scene.pressure import PressureMap
 from explorer.scene.waves import wave_surface
-from explorer.state.session import Session, Shown
+from explorer.services.designs import Designs
+from explorer.state.session import Session
+from explorer.state.shown import Shown
 from hpsop_core.errors import HpsopError
 
 # the hull's underwater part stays visible, faintly
@@ -22,8 +24,9 @@ _WATER_OPACITY = 0.9
 class OverlayView:
     """Draws what is asked for and takes it away again; each map is computed once a design and condition."""
 
-    def __init__(self, session: Session, client: viser.ClientHandle) -> None:
+    def __init__(self, session: Session, designs: Designs, client: viser.ClientHandle) -> None:
         self._session = session
+        self._designs = designs
         self._client = client
         self._nodes: dict[str, Any] = {}
         self._drawn: dict[str, tuple[object, ...]] = {}
@@ -55,45 +58,42 @@ class OverlayView:
             return
         if self._drawn.get(name) == key:
             return
-        session.legends[name] = f'<div class="soft">computing the {name} …</div>'
-        session.hub.changed("legend")
+        session.set_legend(name, f'<div class="soft">computing the {name} …</div>')
         try:
             make()
             self._drawn[name] = key
         except HpsopError as error:
             self._remove(name)
             session.notify(f"No {name} for this design", str(error), "yellow")
-        session.hub.changed("legend")
 
     def _remove(self, name: str) -> None:
         node = self._nodes.pop(name, None)
         if node is not None:
             node.remove()
         self._drawn.pop(name, None)
-        self._session.legends.pop(name, None)
-        self._session.hub.changed("legend")
+        self._session.set_legend(name, None)
 
     def _waves(self, shown: Shown, index: int) -> None:
-        surface = wave_surface(self._session.app.services.waves(shown.evaluation, index))
+        surface = wave_surface(self._designs.waves(shown.evaluation, index))
         # The few highest crests at the bow must not wash out the rest.
         reach = max(float(np.percentile(np.abs(surface.elevation), 97.0)), 0.05)
         opacity = _WATER_OPACITY * surface.opacity
         mesh = painted(surface.vertices, surface.faces, surface.elevation, (-reach, 0.0, reach), SEA, opacity)
         self._show("waves", "/waves", mesh)
-        self._session.legends["waves"] = sea_legend(reach, f"{surface.note}; true scale")
+        self._session.set_legend("waves", sea_legend(reach, f"{surface.note}; true scale"))
 
     def _pressure(self, shown: Shown, index: int) -> None:
-        found = self._session.app.services.hull_pressure(shown.evaluation, index)
+        found = self._designs.hull_pressure(shown.evaluation, index)
         self._map("pressure", "/ship/pressure", found, "hull pressure C<sub>p</sub> [–]")
 
     def _blades(self, shown: Shown, index: int) -> None:
-        found = self._session.app.services.blade_pressure(shown.evaluation, index)
+        found = self._designs.blade_pressure(shown.evaluation, index)
         self._map("blades", "/ship/propeller/pressure", found, "blade pressure C<sub>p</sub> [–]")
 
     def _map(self, name: str, node: str, found: PressureMap, title: str) -> None:
         limits = around_zero(found.coefficient, found.areas())
         self._show(name, node, painted(found.vertices, found.faces, found.coefficient, limits, PRESSURE))
-        self._session.legends[name] = pressure_legend(title, limits, found.note)
+        self._session.set_legend(name, pressure_legend(title, limits, found.note))
 
     def _show(self, name: str, node: str, mesh: trimesh.Trimesh) -> None:
         # Colours travel only with a whole mesh (GLB): replaced on selection, never during a drag.

@@ -12,8 +12,8 @@ class ParallelBrushes:
 
     def __init__(self, session: Session) -> None:
         self._session = session
-        session.handle("brush", "parallel", self._brush)
-        session.handle("click", "parallel", self._click)
+        session.gestures.on("brush", "parallel", self._brush)
+        session.gestures.on("click", "parallel", self._click)
 
     def _brush(self, event: PageEvent) -> None:
         fx, fy0, fy1 = (event.numbers.get(name) for name in ("fx0", "fy0", "fy1"))

@@ -4,10 +4,12 @@ from __future__ import annotations
 
 import viser
 
+from explorer.server.html_slot import Slot
+from explorer.server.widgets import set_value
+from explorer.services.runs import Runs
+from explorer.state.app_state import AppState
 from explorer.state.run_picture import ACTIVE, FAILED, FINISHED, IDLE, PAUSED, RUNNING, STARTING, STOPPED, STOPPING
-from explorer.state.session import AppState
 from explorer.views.chips import box, chip, chips
-from explorer.views.slot import Slot
 from hpsop_core.markup import escape
 from hpsop_core.quantities import number_text
 
@@ -29,8 +31,9 @@ _EXTENSIONS = (10, 25, 100)
 class RunView:
     """Status, buttons, progress bar and figures."""
 
-    def __init__(self, app: AppState, gui: viser.GuiApi) -> None:
+    def __init__(self, app: AppState, runs: Runs, gui: viser.GuiApi) -> None:
         self._app = app
+        self._runs = runs
         self._status = Slot(gui)
         self._buttons = Slot(gui)
         self._facts_slot = Slot(gui)
@@ -40,7 +43,7 @@ class RunView:
 
     def draw(self) -> None:
         """Draw everything again."""
-        picture, services = self._app.picture, self._app.services
+        picture, runs = self._app.picture, self._runs
         status = picture.status
         driven = picture.live
         active = status in ACTIVE and driven
@@ -60,10 +63,10 @@ class RunView:
                 else chip("run_pause", "❚❚ Pause", css="big", disabled=status != RUNNING),
                 chip("run_stop", "■ Stop", css="big danger", disabled=status == STOPPING),
             ]
-        elif picture.name and services.can_continue():
+        elif picture.name and runs.can_continue():
             buttons.append(chip("run_continue", "▶▶ Continue", css="big", hint="go on with this run"))
         more = ""
-        if picture.name and services.can_extend():
+        if picture.name and runs.can_extend():
             more = chips(
                 '<span class="soft">extend by</span>',
                 *(
@@ -87,7 +90,7 @@ class RunView:
         doings = f'<p class="soft">{escape(self._app.doings)}</p>' if self._app.doings and people else ""
         self._facts_slot.show(box(f"{message}{self._facts()}{people}{doings}"))
         total = max(picture.total_generations, 1)
-        self._bar.value = min(100.0, 100.0 * (len(picture.generations) + services.part_of_generation()) / total)
+        set_value(self._bar, min(100.0, 100.0 * (len(picture.generations) + runs.part_of_generation()) / total))
         self._bar.visible = bool(picture.generations) or active
 
     def _facts(self) -> str:

@@ -14,7 +14,9 @@ from explorer.scene.camera import PRESETS, preset
 from explorer.scene.geometry import SceneGeometry, without_deck
 from explorer.scene.surroundings import backdrop, calm_water
 from explorer.server.bridge import PageEvent
+from explorer.services.designs import Designs
 from explorer.state.session import LEFT_DOCK, Session
+from explorer.views.on_display import ghost_of
 from hpsop_core.errors import HpsopError
 
 UNDERWATER = (176, 84, 66)
@@ -38,8 +40,9 @@ _FRAME_SECONDS = 1.0 / 25.0
 class SceneView:
     """One browser's own 3D nodes, moved in place where the topology allows."""
 
-    def __init__(self, session: Session, client: viser.ClientHandle) -> None:
+    def __init__(self, session: Session, designs: Designs, client: viser.ClientHandle) -> None:
         self._session = session
+        self._designs = designs
         self._client = client
         self._handles: dict[str, Any] = {}
         self._faces: dict[str, int] = {}
@@ -59,7 +62,7 @@ class SceneView:
         )
         session.hub.on(("selection", "options", "pins"), self._ask)
         session.hub.on(("size",), lambda: self.place_camera())
-        session.handle("act", "camera", self._camera)
+        session.gestures.on("act", "camera", self._camera)
         session.on_close(self._spinning.clear)
         client.camera.on_update(self._looked)
         self._ask()
@@ -76,7 +79,7 @@ class SceneView:
             self._client.scene.set_background_image(backdrop(options.dark), format="png")
         if shown is None:
             return
-        ghost, pin = session.ghost()
+        ghost, pin = ghost_of(session, self._designs)
         ghost_colour = GHOST if pin is None else PINS[pin]
         state = (
             shown.key,
@@ -93,13 +96,9 @@ class SceneView:
         )
         if state != self._drawn:
             try:
-                geometry = session.app.services.geometry(shown.evaluation.variables)
+                geometry = self._designs.geometry(shown.evaluation.variables)
                 variables = ghost.evaluation.variables if ghost else None
-                behind = (
-                    (session.app.services.geometry(variables), session.app.services.ghost(variables))
-                    if variables
-                    else None
-                )
+                behind = (self._designs.geometry(variables), self._designs.ghost(variables)) if variables else None
             except HpsopError as error:
                 session.notify("No geometry for this design", str(error), "yellow")
                 return

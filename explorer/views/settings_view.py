@@ -10,8 +10,11 @@ from typing import Any
 
 import viser
 
-from explorer.state.draft import numbers_from_text
-from explorer.state.session import AppState
+from explorer.server.html_slot import Slot
+from explorer.server.widgets import set_value
+from explorer.services.runs import Runs
+from explorer.state.app_state import AppState
+from explorer.state.draft import Draft, numbers_from_text
 from explorer.views.chips import box, chip, chips
 from explorer.views.settings_fields import CASE_FIELDS, OPEN_FOLDERS, SEARCH_FIELDS, SLIDER_RANGES, STEPS
 from hpsop_core.case.case import SHIPPED_CASES, load_case
@@ -31,27 +34,29 @@ class SettingsView:
     def __init__(
         self,
         app: AppState,
+        runs: Runs,
         gui: viser.GuiApi,
         space: Any,
         case: Any,
         save: Callable[[viser.GuiEvent[Any]], None],
     ) -> None:
         self._app = app
+        self._runs = runs
         self._gui = gui
         self._typing: dict[tuple[str, str], int] = {}
         self._serial = itertools.count(1)
-        self._readouts: dict[str, viser.GuiHtmlHandle] = {}
+        self._readouts: dict[str, Slot] = {}
         self._sliders: dict[str, Any] = {}
         self._widgets: dict[tuple[str, str], Any] = {}
         self._labels: dict[tuple[str, str], str] = {}
         with space:
             self._preset = gui.add_dropdown("Case", self._preset_names(), initial_value=app.draft.base.name)
-            self._about = gui.add_html("")
+            self._about = Slot(gui)
             for section, name, label in SEARCH_FIELDS:
                 self.add_field(section, name, label)
             self._workers = gui.add_number(
                 "Workers",
-                app.services.workers,
+                runs.workers,
                 min=1,
                 max=64,
                 step=1,
@@ -61,7 +66,7 @@ class SettingsView:
                 self._add_slider(quantity)
             self._reset = gui.add_button("Reset changes to the preset", color="gray")
         with case:
-            self._trouble = gui.add_html("")
+            self._trouble = Slot(gui)
             for title, fields in CASE_FIELDS:
                 with gui.add_folder(title, expand_by_default=title in OPEN_FOLDERS):
                     for section, name, label in fields:
@@ -90,7 +95,7 @@ class SettingsView:
         slider = self._gui.add_multi_slider(
             label, kind(least), kind(most), kind(step), (kind(low), kind(high)), hint=rule.meaning, marks=()
         )
-        readout = self._gui.add_html("")
+        readout = Slot(self._gui)
         self._sliders[quantity.key], self._readouts[quantity.key] = slider, readout
 
         def update(event: viser.GuiEvent[Any]) -> None:
@@ -105,12 +110,11 @@ class SettingsView:
         except InputError as error:
             self._app.refuse(event.client_id or 0, str(error))
             self._show_bounds(key)
-            self._app.hub.changed("draft")
 
     def _show_bounds(self, key: str) -> None:
         slider, (low, high) = self._sliders[key], self._app.draft.value("bounds", key)
         slider.min, slider.max = min(slider.min, low), max(slider.max, high)
-        slider.value = (self._typed(key, low), self._typed(key, high))
+        set_value(slider, (self._typed(key, low), self._typed(key, high)))
 
     def set_bounds(self, key: str, value: Any) -> None:
         """New bounds of a variable from anything a browser may send.
@@ -135,9 +139,7 @@ class SettingsView:
             raise InputError(f"bounds: {key} must stay within {slider.min:g} to {slider.max:g}")
         if rule.kind == "integer" and (low != round(low) or high != round(high)):
             raise InputError(f"bounds: {key} must be whole numbers")
-        with self._app.lock:
-            self._app.draft.set("bounds", key, (low, high))
-        self._app.tell_all("draft")
+        self._app.change_draft(lambda draft: draft.set("bounds", key, (low, high)))
 
     @staticmethod
     def _typed(key: str, value: float) -> float | int:
@@ -178,9 +180,7 @@ class SettingsView:
         except InputError as error:
             # "1" on the way to "120" is no mistake yet; until the typing rests, Start is refused with this reason.
             why = str(error)
-            with self._app.lock:
-                self._app.draft.hold(section, name, why)
-            self._app.tell_all("draft")
+            self._app.change_draft(lambda draft: draft.hold(section, name, why))
             timer = threading.Timer(_TYPING_SECONDS, self._rested, (section, name, serial, why, client_id))
             timer.daemon = True
             timer.start()
@@ -188,11 +188,9 @@ class SettingsView:
     def _rested(self, section: str, name: str, serial: int, why: str, client_id: int) -> None:
         if self._typing.get((section, name)) != serial:
             return
-        with self._app.lock:
-            self._app.draft.release(section, name)
         self._app.refuse(client_id, why)
         self._show_field(section, name)
-        self._app.tell_all("draft")
+        self._app.change_draft(lambda draft: draft.release(section, name))
 
     def set_field(self, section: str, name: str, value: Any) -> None:
         """A new value of a field from anything a browser may send.
@@ -206,19 +204,15 @@ class SettingsView:
                 raise InputError(f"{section}: {name}: write numbers separated by commas")
             value = numbers_from_text(value, f"{section}: {name}")
             # two lists that belong together are changed one after the other: the whole is judged at Start
-            with self._app.lock:
-                self._app.draft.set(section, name, value)
+            self._app.change_draft(lambda draft: draft.set(section, name, value))
         else:
             checked = checked_value(value, rule, f"{section}: {name}")
-            with self._app.lock:
-                self._app.draft.set(section, name, checked)
-        self._app.tell_all("draft")
+            self._app.change_draft(lambda draft: draft.set(section, name, checked))
 
     def _show_field(self, section: str, name: str) -> None:
         widget, value = self._widgets[(section, name)], self._app.draft.value(section, name)
         shown = _list_text(value) if isinstance(value, tuple) else value
-        if widget.value != shown:
-            widget.value = shown
+        set_value(widget, shown)
 
     # ---- presets ---------------------------------------------------------------------------------------------------
     def _on_preset(self, event: viser.GuiEvent[Any]) -> None:
@@ -227,35 +221,29 @@ class SettingsView:
         name = event.target.value
         if name not in self._preset_names():
             self._app.refuse(event.client_id, f"case: {str(name)[:40]!r} is no option")
-            self._preset.value = self._app.draft.base.name
+            set_value(self._preset, self._app.draft.base.name)
             return
         if name in SHIPPED_CASES:
-            with self._app.lock:
-                self._app.draft.begin(load_case(name))
-            self.show_all()
-            self._app.tell_all("draft")
+            self._app.change_draft(lambda draft: draft.begin(load_case(name)), whole=True)
 
     def _on_workers(self, event: viser.GuiEvent[Any]) -> None:
         if event.client_id is None:
             return
         try:
-            self._app.services.set_workers(event.target.value)
+            self._runs.set_workers(event.target.value)
         except InputError as error:
             self._app.refuse(event.client_id, str(error))
-            self._workers.value = self._app.services.workers
+            set_value(self._workers, self._runs.workers)
 
     def _on_reset(self, _event: viser.GuiEvent[Any]) -> None:
-        with self._app.lock:
-            self._app.draft.reset_all()
-        self.show_all()
-        self._app.tell_all("draft")
+        self._app.change_draft(Draft.reset_all, whole=True)
 
     def show_all(self) -> None:
         """Bring every widget to the draft, which was changed as a whole (a preset, a reset, another run's case)."""
         name, names = self._app.draft.base.name, self._preset_names()
         if tuple(self._preset.options) != tuple(names):
             self._preset.options = names
-        self._preset.value = name
+        set_value(self._preset, name)
         for key in self._sliders:
             self._show_bounds(key)
         for section, field in self._widgets:
@@ -286,10 +274,8 @@ class SettingsView:
                 for name in fields
             )
             changed = f'<p class="soft">Changed (●):</p>{chips(words)}'
-        self._about.content = box(
-            f"<p><b>{escape(draft.base.title)}</b></p><p class='soft'>{lines}</p>{changed}{trouble}"
-        )
-        self._trouble.content = box(trouble) if trouble else ""
+        self._about.show(box(f"<p><b>{escape(draft.base.title)}</b></p><p class='soft'>{lines}</p>{changed}{trouble}"))
+        self._trouble.show(box(trouble) if trouble else "")
         self._reset.visible = count > 0
         for (section, name), widget in self._widgets.items():
             label = self._labels[(section, name)] + (" ●" if draft.changed(section, name) else "")
@@ -302,7 +288,7 @@ class SettingsView:
             unit = f" {quantity.unit}" if quantity.unit else ""
             mark = " ●" if draft.changed("bounds", quantity.key) else ""
             text = f"fixed at {a}{unit}" if low == high else f"{a} … {b}{unit}"
-            self._readouts[quantity.key].content = (
+            self._readouts[quantity.key].show(
                 f'<div class="hp readout" data-variable="{quantity.key}"><span>{text}</span>'
                 f'<span class="level">{mark}</span></div>'
             )

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Mapping, Sequence
 
-from explorer.state.session import Shown
+from explorer.state.shown import Shown
 from hpsop_core.markup import escape, symbol_html
 from hpsop_core.quantities import (
     CONSTRAINTS,

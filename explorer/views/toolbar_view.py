@@ -10,9 +10,12 @@ from PIL import Image
 
 from explorer.scene.camera import PRESETS, TITLES
 from explorer.server.bridge import PageEvent, overlay
-from explorer.state.session import Session, Shown
+from explorer.server.html_slot import Slot
+from explorer.services.designs import Designs
+from explorer.state.session import Session
+from explorer.state.shown import Shown
 from explorer.views.chips import chip, chips
-from explorer.views.slot import Slot
+from explorer.views.on_display import ghost_of
 from explorer.views.tables import headline
 from hpsop_core.errors import HpsopError
 from hpsop_core.export.design_files import zip_design
@@ -33,17 +36,18 @@ _SWITCHES = (
 class ToolbarView:
     """Camera, switches, theme, screenshot; and the design's card with legends of what is overlaid."""
 
-    def __init__(self, session: Session, gui: viser.GuiApi, client: viser.ClientHandle) -> None:
+    def __init__(self, session: Session, designs: Designs, gui: viser.GuiApi, client: viser.ClientHandle) -> None:
         self._session = session
+        self._designs = designs
         self._client = client
         self._bar = Slot(gui)
         self._card = Slot(gui)
         session.hub.on(("options", "selection"), self.draw)
         session.hub.on(("selection", "options", "pins", "legend"), self.draw_card)
-        session.handle("act", "switch", self._switch)
-        session.handle("act", "condition", self._condition)
-        session.handle("act", "screenshot", self._screenshot)
-        session.handle("act", "take_away", self._take_away)
+        session.gestures.on("act", "switch", self._switch)
+        session.gestures.on("act", "condition", self._condition)
+        session.gestures.on("act", "screenshot", self._screenshot)
+        session.gestures.on("act", "take_away", self._take_away)
         self.draw()
         self.draw_card()
 
@@ -116,7 +120,7 @@ class ToolbarView:
         )
 
     def _ghost_words(self) -> str:
-        ghost, _ = self._session.ghost()
+        ghost, _ = ghost_of(self._session, self._designs)
         return f"<br>ghost: {escape(_within_a_line(ghost))}" if ghost is not None else ""
 
     def _switch(self, event: PageEvent) -> None:
@@ -145,7 +149,7 @@ class ToolbarView:
     def _export(self, shown: Shown) -> None:
         case, evaluation = self._session.picture.case, shown.evaluation
         try:
-            reference = self._session.app.services.physics.reference(case, evaluation.level)
+            reference = self._designs.reference(evaluation.level)
             archive = zip_design(case, evaluation, _within_a_line(shown), reference)
         except HpsopError as error:
             self._session.notify("No files", str(error), "red")

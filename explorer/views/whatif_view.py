@@ -8,8 +8,13 @@ from typing import Any
 
 import viser
 
-from explorer.state.session import Session, Shown
+from explorer.server.html_slot import Slot
+from explorer.server.widgets import set_value
+from explorer.services.services import Services
+from explorer.state.session import Session
+from explorer.state.shown import Shown
 from explorer.views.chips import box
+from explorer.views.on_display import select_design
 from explorer.views.tables import headline, warnings_html
 from hpsop_core.case.variables import VARIABLE_RULES, DesignVariables
 from hpsop_core.errors import HpsopError, InputError
@@ -43,11 +48,12 @@ _LEVEL2 = "Evaluate at level 2"
 class WhatIfView:
     """Sliders that follow the selection until they are moved, and then lead it."""
 
-    def __init__(self, session: Session, gui: viser.GuiApi) -> None:
+    def __init__(self, session: Session, services: Services, gui: viser.GuiApi) -> None:
         self._session = session
+        self._designs, self._runs = services.designs, services.runs
         self._answered: list[float] = []
         self._own: Shown | None = None
-        self._html = gui.add_html("")
+        self._html = Slot(gui)
         self._sliders: dict[str, Any] = {}
         for quantity in VARIABLES:
             low, high = _REACH[quantity.key]
@@ -91,14 +97,16 @@ class WhatIfView:
                     slider.min = value
                 if value > slider.max:
                     slider.max = value
-                slider.value = value
+                set_value(slider, value)
         self._draw(shown)
 
     def _draw(self, shown: Shown) -> None:
         if shown.kind != "whatif":
-            self._html.content = box(
-                f'<p>{headline(shown)}</p><p class="soft">Move a slider: level 1 answers at once, and the hull, the '
-                "propeller, the curves and the table follow.</p>"
+            self._html.show(
+                box(
+                    f'<p>{headline(shown)}</p><p class="soft">Move a slider: level 1 answers at once, and the hull, '
+                    "the propeller, the curves and the table follow.</p>"
+                )
             )
             return
         evaluation = shown.evaluation
@@ -119,9 +127,7 @@ class WhatIfView:
         )
         recent = [moment for moment in self._answered if moment > time.monotonic() - 2.0]
         rate = f'<p class="soft">{len(recent) / 2.0:.0f} answers a second</p>' if len(recent) > 4 else ""
-        self._html.content = box(
-            f"<p>{headline(shown)}</p>{warnings_html(shown)}<div class='facts'>{facts}</div>{rate}"
-        )
+        self._html.show(box(f"<p>{headline(shown)}</p>{warnings_html(shown)}<div class='facts'>{facts}</div>{rate}"))
 
     def _moved(self, event: viser.GuiEvent[Any]) -> None:
         if event.client_id is not None:
@@ -130,9 +136,9 @@ class WhatIfView:
     def _answer(self, level: int = 1) -> None:
         try:
             variables = self._variables()
-            shown = self._session.app.whatif(variables, level)
+            shown = self._designs.whatif(variables, level)
             # level 2 takes a second; what the sliders said meanwhile has been answered since
-            if shown is None or (level == 2 and self._variables() != variables):
+            if level == 2 and self._variables() != variables:
                 return
         except HpsopError as error:
             self._session.notify("What-if", str(error), "yellow")
@@ -159,18 +165,18 @@ class WhatIfView:
 
         def work() -> None:
             try:
-                design_id = session.app.services.add_by_hand(shown.evaluation)
+                design_id = self._runs.add_by_hand(shown.evaluation)
             except HpsopError as error:
                 session.notify("Not added", str(error), "yellow")
                 return
             session.notify("Added", f"Design {design_id} stands in the archive, marked as made by hand.", "green")
-            session.select_id(design_id)
+            select_design(session, self._designs, design_id)
 
         session.worker.every(work)
 
     def _show_buttons(self) -> None:
         shown = self._session.selected
         own = shown is not None and shown.kind == "whatif" and shown.evaluation.ok
-        disabled = not (own and self._session.app.services.can_add_by_hand())
+        disabled = not (own and self._runs.can_add_by_hand())
         if self._add.disabled != disabled:
             self._add.disabled = disabled

@@ -18,7 +18,7 @@ from explorer.scene.camera import PRESETS, preset
 from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, ramp
 from explorer.scene.transfer import transferred
 from explorer.services.physics import Physics
-from explorer.state.session import Shown
+from explorer.state.shown import Shown
 from explorer.views.tables import many_table
 from hpsop_core.case.case import Case, load_case
 from hpsop_core.evaluation.result import Evaluation

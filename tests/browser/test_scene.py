@@ -18,7 +18,7 @@ def explorer(tmp_path_factory):
         folder=tmp_path_factory.mktemp("runs"),
         workers=2,
     )
-    page.services.start()
+    page.services.runs.start()
     wait_until(lambda: page.state.picture.status == "finished", 90, "the small run")
     yield page
     page.close()

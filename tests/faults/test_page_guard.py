@@ -184,7 +184,7 @@ def test_values_no_widget_could_send_are_refused_in_words(explorer: Explorer, ho
     assert draft.case() == before[0]
     assert explorer.state.picture.case == before[1].case
     assert settings._sliders["draft"].value == (14.0, 14.5)
-    assert explorer.services.workers == 1
+    assert explorer.services.runs.workers == 1
 
 
 def test_a_typed_number_out_of_range_is_refused_when_the_typing_rests(explorer: Explorer, hostile: Hostile) -> None:
@@ -204,7 +204,7 @@ def test_a_typed_number_out_of_range_is_refused_when_the_typing_rests(explorer: 
     while not draft.held and time.monotonic() < give_up:
         time.sleep(0.01)
     with pytest.raises(InputError, match="population"):
-        explorer.services.start()
+        explorer.services.runs.start()
     hostile.update(population, value=120)
     while draft.value("optimization", "population") != 120 and time.monotonic() < give_up:
         time.sleep(0.01)
@@ -308,7 +308,7 @@ def test_origins_of_a_served_network_name_its_own_names_only() -> None:
 
 
 def test_a_run_of_another_name_is_never_a_path(tmp_path: Path) -> None:
-    from explorer.state.library import RunLibrary
+    from explorer.services.library import RunLibrary
 
     outside = tmp_path / "outside.hpsop"
     outside.write_bytes(b"")

@@ -163,11 +163,11 @@ def _failed_run(explorer: Explorer, camera: Photographer, folder: Path) -> None:
         old.backup(new)
         reason = "the workers ended three times in a row while evaluating design 412; see the log"
         new.executemany("UPDATE run SET value = ? WHERE key = ?", [("failed", "state"), (reason, "reason")])
-    explorer.services.open(copy)
+    explorer.services.runs.open(copy)
     _wait(lambda: explorer.state.picture.status == FAILED, 20.0)
     time.sleep(3.0)
     camera.take("failed")
-    explorer.services.open(source)
+    explorer.services.runs.open(source)
     _wait(lambda: explorer.state.picture.status == FINISHED, 20.0)
     time.sleep(2.0)
 
@@ -281,7 +281,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 camera.press("switch", "dark", 4.0)
             if arguments.docs:
                 _begun_and_stopped(explorer, camera)
-                explorer.services.open(chosen, read_only=True)
+                explorer.services.runs.open(chosen, read_only=True)
                 time.sleep(6.0)
                 _for_the_docs(camera)
             elif shown is None:

@@ -254,6 +254,17 @@ class RunKeeper:
         except HpsopError:
             return None
 
+    def initial(self, level: int) -> Evaluation | None:
+        """The initial design's numbers at a level, or None while the run does not have them."""
+        reader = self._ensure_reader()
+        if reader is None:
+            return None
+        try:
+            found = reader.initial(level).evaluation
+        except HpsopError:
+            return None
+        return found if found.level == level else None
+
     def picture(self) -> RunPicture:
         """The run as it is now."""
         with self._guard:

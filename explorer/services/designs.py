@@ -1,0 +1,168 @@
+"""Answers about designs of the run on display: numbers, curves, shapes, waves and pressures, each remembered."""
+
+from __future__ import annotations
+
+from typing import Protocol
+
+import numpy as np
+from numpy.typing import NDArray
+
+from explorer.charts.curves import DesignCurves
+from explorer.scene.geometry import SceneGeometry, ghost_segments, scene_geometry
+from explorer.scene.pressure import PressureMap, blade_map, hull_map
+from explorer.services.display import Display
+from explorer.services.physics import Physics, Remembered
+from explorer.state.shown import Shown
+from hpsop_core.case.case import Case
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.errors import HpsopError
+from hpsop_core.evaluation.curves import HullLines
+from hpsop_core.evaluation.fields import WaveField, blade_pressure, hull_pressure, waves
+from hpsop_core.evaluation.reference import Reference
+from hpsop_core.evaluation.result import Evaluation
+
+
+class DesignSource(Protocol):
+    """Where the designs of a run are read from."""
+
+    def evaluation(self, design_id: int) -> Evaluation | None:
+        """A design's numbers."""
+
+    def initial(self, level: int) -> Evaluation | None:
+        """The initial design's at a level."""
+
+
+class Designs:
+    """Designs of the case on display: those of its run, its initial one, and those of the user's own making.
+
+    Args:
+        display: says which case that is.
+    """
+
+    def __init__(self, display: Display) -> None:
+        self._display = display
+        self._source: DesignSource | None = None
+        self._physics = Physics()
+        self._geometry: Remembered[SceneGeometry] = Remembered(24)
+        self._waves: Remembered[WaveField] = Remembered(6)
+        self._pressure: Remembered[PressureMap] = Remembered(8)
+
+    def read_from(self, source: DesignSource | None) -> None:
+        """Read a run's designs from here from now on."""
+        self._source = source
+
+    @property
+    def case(self) -> Case:
+        """Of the run on display, or as set up while there is none."""
+        return self._display.picture.case
+
+    # ---- numbers ---------------------------------------------------------------------------------------------------
+    def shown(self, design_id: int) -> Shown | None:
+        """A design of the run on display."""
+        source = self._source
+        evaluation = source.evaluation(design_id) if source is not None else None
+        if evaluation is None:
+            return None
+        picture = self._display.picture
+        row = picture.row(design_id)
+        generation = int(picture.generation[row]) if row is not None else None
+        hand = row is not None and bool(picture.by_hand[row])
+        label = f"Design {design_id}" + (" (by hand)" if hand else "")
+        return Shown(label, evaluation, design_id, generation)
+
+    def initial(self, level: int) -> Shown:
+        """The initial design at a level: from the run where it has it, else computed."""
+        case, source = self.case, self._source
+        evaluation = source.initial(level) if source is not None else None
+        if evaluation is None or evaluation.variables != case.initial.variables:
+            evaluation = self._physics.initial(case, level)
+        return Shown("Initial design", evaluation, kind="initial")
+
+    def first(self) -> Shown:
+        """What is seen first of the case or run on display."""
+        return self.initial(self._display.picture.current_level)
+
+    def whatif(self, variables: DesignVariables, level: int = 1) -> Shown:
+        """A design of the user's own making, evaluated now."""
+        return Shown("What-if", self._physics.evaluate(self.case, variables, level), kind="whatif")
+
+    def again(self, saved: object) -> Shown | None:
+        """The design that ``Shown.saved`` described, or None where it no longer exists."""
+        if not isinstance(saved, dict):
+            return None
+        if isinstance(saved.get("id"), int):
+            return self.shown(saved["id"])
+        level = saved["level"] if saved.get("level") in (1, 2) else 1
+        if saved.get("kind") == "initial":
+            return self.initial(level)
+        try:
+            return self.whatif(DesignVariables.from_dict(saved.get("variables") or {}), level)
+        except (HpsopError, TypeError, AttributeError):
+            return None
+
+    def reference(self, level: int) -> Reference:
+        """What normalises at a level."""
+        return self._physics.reference(self.case, level)
+
+    # ---- curves and lines ------------------------------------------------------------------------------------------
+    def curves(self, evaluation: Evaluation) -> DesignCurves:
+        """Resistance and thrust against Froude number."""
+        return self._physics.curves(self.case, evaluation)
+
+    def known_curves(self, evaluation: Evaluation) -> DesignCurves | None:
+        """The same where it has been computed."""
+        return self._physics.known_curves(self.case, evaluation)
+
+    def lines(self, variables: DesignVariables) -> HullLines:
+        """Sections and areas."""
+        return self._physics.lines(self.case, variables)
+
+    # ---- the 3D view -----------------------------------------------------------------------------------------------
+    def geometry(self, variables: DesignVariables) -> SceneGeometry:
+        """Meshes for the 3D view."""
+        case = self.case
+        key = (case.hull, case.propeller, case.initial, variables.key())
+        return self._geometry.get(key, lambda: scene_geometry(case, variables))
+
+    def ghost(self, variables: DesignVariables) -> NDArray[np.float64]:
+        """A hull as a lines drawing in space: (n, 2, 3) segments of its sections and its waterline, both sides."""
+        lines, geometry = self.lines(variables), self.geometry(variables)
+        return ghost_segments(lines, geometry.waterline)
+
+    def waves(self, evaluation: Evaluation, index: int) -> WaveField:
+        """The water surface at a condition, by the evaluation's own level.
+
+        Raises:
+            SolverFailure: it cannot be computed.
+        """
+        case, condition = self.case, evaluation.conditions[index]
+        key = (case, evaluation.level, evaluation.variables.key(), condition.froude_number, "waves")
+        return self._waves.get(key, lambda: waves(case, evaluation, condition=index))
+
+    def hull_pressure(self, evaluation: Evaluation, index: int) -> PressureMap:
+        """Pressure on the hull at a condition, always by level 2.
+
+        Raises:
+            SolverFailure: it cannot be computed.
+        """
+        case, froude = self.case, evaluation.conditions[index].froude_number
+        key = (case.hull, case.initial, evaluation.variables.key(), froude, "hull")
+
+        def compute() -> PressureMap:
+            return hull_map(hull_pressure(case, evaluation, condition=index), self.geometry(evaluation.variables))
+
+        return self._pressure.get(key, compute)
+
+    def blade_pressure(self, evaluation: Evaluation, index: int) -> PressureMap:
+        """Pressure on the blades at a condition's advance coefficient, always by level 2.
+
+        Raises:
+            SolverFailure: it cannot be computed.
+        """
+        case, condition = self.case, evaluation.conditions[index]
+        key = (case.propeller, evaluation.variables.key(), condition.advance_coefficient, "blades")
+
+        def compute() -> PressureMap:
+            return blade_map(blade_pressure(case, evaluation, condition=index), self.geometry(evaluation.variables))
+
+        return self._pressure.get(key, compute)

@@ -1,0 +1,163 @@
+"""What all browsers share: the case being set up, the run on display, and who is watching."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable
+from dataclasses import dataclass, field
+from typing import Any, Protocol
+
+from explorer.server.worker import LatestWorker
+from explorer.state.draft import Draft
+from explorer.state.hub import Hub
+from explorer.state.run_picture import RunPicture
+from explorer.state.shown import Shown
+from hpsop_core.case.case import Case
+
+_MOST_REMEMBERED = 50
+
+
+class Watcher(Protocol):
+    """What the shared state asks of a browser's own state (explorer/state/session.py)."""
+
+    browser: str
+    number: int
+    hub: Hub
+    notify: Callable[[str, str, str], None]
+
+    def close(self) -> None:
+        """The browser has left."""
+
+    def leave_run(self, first: Shown | None) -> None:
+        """Another run is on display: forget what belonged to the one before and show this design."""
+
+
+@dataclass
+class AppState:
+    """Everything that all browsers share. Views read its attributes and change them by its methods only.
+
+    Attributes:
+        draft: the case being set up.
+        worker: the thread of shared work and shared views.
+        hub: topics of the shared views: draft, settings, run, people, library.
+        picture: the run on display.
+        sessions: by client id.
+        memory: what a reload brings back, by the browser's own name; the latest is the last.
+        doings: who did what to the run last, for people.
+        asked_to_delete: the run of the library that somebody is being asked about, or "".
+    """
+
+    draft: Draft
+    worker: LatestWorker
+    hub: Hub
+    picture: RunPicture
+    sessions: dict[int, Watcher] = field(default_factory=dict)
+    memory: dict[str, dict[str, Any]] = field(default_factory=dict)
+    lock: threading.RLock = field(default_factory=threading.RLock)
+    on_remember: Callable[[], None] | None = None
+    doings: str = ""
+    asked_to_delete: str = ""
+
+    # ---- browsers --------------------------------------------------------------------------------------------------
+    def join(self, client_id: int, watcher: Watcher) -> None:
+        """A browser has come."""
+        with self.lock:
+            self.sessions[client_id] = watcher
+
+    def leave(self, client_id: int) -> Watcher | None:
+        """A browser has gone; it is returned where it was known."""
+        with self.lock:
+            return self.sessions.pop(client_id, None)
+
+    def greet(self, watcher: Watcher) -> None:
+        """Give a browser the number it had before, or the least that is free."""
+        with self.lock:
+            taken = {other.number for other in self.sessions.values() if other is not watcher}
+            had = self.memory.get(watcher.browser, {}).get("number")
+            if isinstance(had, int) and had > 0 and had not in taken:
+                watcher.number = had
+            else:
+                watcher.number = next(number for number in range(1, len(taken) + 2) if number not in taken)
+        self.hub.changed("people")
+
+    def did(self, watcher: Watcher, what: str) -> None:
+        """Tell everybody else what this browser did to the run or the settings that all share."""
+        with self.lock:
+            others = [other for other in self.sessions.values() if other is not watcher]
+        self.doings = f"browser {watcher.number} {what}" if others else ""
+        for other in others:
+            other.notify(f"Browser {watcher.number}", what, "blue")
+        self.hub.changed("run")
+
+    def remember(self, browser: str, saved: dict[str, Any]) -> None:
+        """Keep what a reload of this browser brings back; one that has not said its name yet is not kept."""
+        if not browser:
+            return
+        with self.lock:
+            self.memory.pop(browser, None)
+            self.memory[browser] = saved
+            while len(self.memory) > _MOST_REMEMBERED:
+                self.memory.pop(next(iter(self.memory)))
+        if self.on_remember is not None:
+            self.on_remember()
+
+    def refuse(self, client_id: int, text: str) -> None:
+        """Tell a browser that what it sent was not accepted."""
+        watcher = self.sessions.get(client_id)
+        if watcher is not None:
+            watcher.notify("Not accepted", text, "red")
+
+    def tell_all(self, topic: str) -> None:
+        """A shared topic that every browser's own views may want too."""
+        self.hub.changed(topic)
+        with self.lock:
+            watchers = list(self.sessions.values())
+        for watcher in watchers:
+            watcher.hub.changed(topic)
+
+    # ---- the run on display ----------------------------------------------------------------------------------------
+    def show_run(self, picture: RunPicture, first: Callable[[], Shown | None]) -> None:
+        """A newer picture of the run, or another run, for everybody.
+
+        Args:
+            picture: of the run.
+            first: the design that everybody sees first; asked only when it is another run.
+        """
+        with self.lock:
+            replaced = picture.name != self.picture.name
+            self.picture = picture
+            watchers = list(self.sessions.values())
+        self.hub.changed("run")
+        for watcher in watchers:
+            if replaced:
+                watcher.leave_run(first())
+            else:
+                watcher.hub.changed("run")
+
+    def ask_to_delete(self, name: str) -> None:
+        """Ask whether this run of the library is to be deleted, or no longer for ""."""
+        self.asked_to_delete = name
+        self.tell_all("library")
+
+    # ---- the case being set up -------------------------------------------------------------------------------------
+    def drafted(self) -> Case:
+        """The case as it is set up now.
+
+        Raises:
+            InputError: the settings do not make a case; the text says which field and what to do.
+        """
+        with self.lock:
+            return self.draft.case()
+
+    def change_draft(self, change: Callable[[Draft], None], whole: bool = False) -> None:
+        """Change the case being set up.
+
+        Args:
+            change: what to do to the draft.
+            whole: whether widgets have to follow it too: a preset, a reset, another run's case.
+        """
+        with self.lock:
+            change(self.draft)
+        if whole:
+            self.hub.changed("settings")
+        self.tell_all("draft")

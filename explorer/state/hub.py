@@ -1,0 +1,39 @@
+"""Who wants to know of which topic."""
+
+from __future__ import annotations
+
+import threading
+from collections.abc import Callable, Iterable
+
+from explorer.server.worker import LatestWorker
+
+
+class Hub:
+    """Tells views that a topic changed.
+
+    A view is called on the hub's own thread, where a newer call replaces one that still waits: a stream of generations
+    never piles up behind a slow browser, and callbacks of viser's pool never overlap inside a view.
+
+    Args:
+        worker: the thread.
+    """
+
+    def __init__(self, worker: LatestWorker) -> None:
+        self._worker = worker
+        self._wanted: dict[str, list[tuple[str, Callable[[], None]]]] = {}
+        self._lock = threading.Lock()
+        self._serial = 0
+
+    def on(self, topics: Iterable[str], callback: Callable[[], None]) -> None:
+        """Call ``callback`` on the worker after any of these topics changed."""
+        with self._lock:
+            self._serial += 1
+            for topic in topics:
+                self._wanted.setdefault(topic, []).append((f"view {self._serial}", callback))
+
+    def changed(self, *topics: str) -> None:
+        """Tell; a view that wants several of the topics is called once."""
+        with self._lock:
+            called = {key: callback for topic in topics for key, callback in self._wanted.get(topic, [])}
+        for key, callback in called.items():
+            self._worker.latest(key, callback)

@@ -1,0 +1,46 @@
+"""A design on display."""
+
+from __future__ import annotations
+
+from dataclasses import dataclass
+from typing import Any
+
+from hpsop_core.evaluation.result import Evaluation
+
+
+@dataclass(frozen=True)
+class Shown:
+    """A design on display.
+
+    Attributes:
+        label: for people: "Design 1234", "Initial design", "What-if".
+        evaluation: its numbers.
+        design_id: in the run, or None.
+        generation: it was born in, or None.
+        kind: "run", "initial" or "whatif".
+    """
+
+    label: str
+    evaluation: Evaluation
+    design_id: int | None = None
+    generation: int | None = None
+    kind: str = "run"
+
+    @property
+    def key(self) -> tuple[object, ...]:
+        """Two shown designs of equal keys have the same geometry and curves."""
+        return (self.evaluation.level, *self.evaluation.variables.key())
+
+    @property
+    def name(self) -> str:
+        """The key as text."""
+        return " ".join(str(part) for part in self.key)
+
+    def saved(self) -> dict[str, Any]:
+        """By what a reload finds it again, as JSON."""
+        return {
+            "id": self.design_id,
+            "kind": self.kind,
+            "level": self.evaluation.level,
+            "variables": self.evaluation.variables.as_dict(),
+        }

@@ -1,0 +1,35 @@
+"""What of the design is drawn in 3D."""
+
+from __future__ import annotations
+
+import dataclasses
+from dataclasses import dataclass
+
+
+@dataclass(frozen=True)
+class ViewOptions:
+    """What of the design is drawn in 3D; belongs to a browser.
+
+    ``ghost_of`` is "initial" or the ``name`` of a pinned design; a pin that is gone means the initial design.
+    ``beside`` puts the ghost abeam, to port, where neither hull hides the other.
+    """
+
+    ghost: bool = False
+    ghost_of: str = "initial"
+    beside: bool = False
+    waves: bool = False
+    pressure: bool = False
+    spin: bool = False
+    topsides: bool = True
+    water: bool = True
+    condition: int = 0
+    camera: str = "perspective"
+    dark: bool = False
+
+    def restored(self, saved: object) -> ViewOptions:
+        """These with what ``saved`` says, where it says something that an option can be."""
+        if not isinstance(saved, dict):
+            return self
+        known = dataclasses.asdict(ViewOptions())
+        taken = {key: value for key, value in saved.items() if key in known and type(value) is type(known[key])}
+        return dataclasses.replace(self, **taken)

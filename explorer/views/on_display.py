@@ -1,0 +1,46 @@
+"""What a browser looks at: the selection, the design beside it, and what charts overlay."""
+
+from __future__ import annotations
+
+from explorer.charts.curves import Series
+from explorer.services.designs import Designs
+from explorer.state.session import Session
+from explorer.state.shown import Shown
+
+
+def select_design(session: Session, designs: Designs, design_id: int) -> None:
+    """Select a design of the run; one that it does not have, or that failed, is left alone."""
+    shown = designs.shown(design_id)
+    if shown is not None and shown.evaluation.ok:
+        session.select(shown)
+
+
+def select_first(session: Session, designs: Designs) -> None:
+    """Select the initial design where nothing is selected yet."""
+    if session.selected is None:
+        session.select(designs.first())
+
+
+def ghost_of(session: Session, designs: Designs) -> tuple[Shown | None, int | None]:
+    """The design that stands beside the selected one in 3D, and which pin it is; a ship is not its own ghost."""
+    selected = session.selected
+    if not session.options.ghost or selected is None:
+        return None, None
+    place = next((index for index, item in enumerate(session.pins) if item.name == session.options.ghost_of), None)
+    found = designs.initial(selected.evaluation.level) if place is None else session.pins[place]
+    same = found.evaluation.variables == selected.evaluation.variables
+    return (None if same else found), place
+
+
+def overlaid(session: Session, designs: Designs) -> list[tuple[Series, Shown]]:
+    """What charts overlay: the initial design dashed, pins, and the selection last."""
+    selected = session.selected
+    level = selected.evaluation.level if selected else 1
+    shown = [(Series("initial", "initial", "dash"), designs.initial(level))]
+    for index, item in enumerate(session.pins):
+        if selected is None or item.key != selected.key:
+            other = f" (level {item.evaluation.level})" if item.evaluation.level != level else ""
+            shown.append((Series(f"pinned {item.label.lower()}{other}", f"pin{index + 1}"), item))
+    if selected is not None and selected.kind != "initial":
+        shown.append((Series(selected.label, "selected"), selected))
+    return shown

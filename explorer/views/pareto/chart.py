@@ -1,0 +1,101 @@
+"""The Pareto chart, drawn."""
+
+from __future__ import annotations
+
+from collections.abc import Mapping
+
+import viser
+
+from explorer.charts.pareto import ParetoMark, ParetoOptions, automatic_limits, pareto_background, pareto_chart
+from explorer.charts.plot import Plot, legend
+from explorer.server.html_slot import Slot
+from explorer.services.designs import Designs
+from explorer.state.session import Limits, Session
+from explorer.views.chips import box
+from hpsop_core.quantities import objective_title
+
+_FRAME = (68.0, 42.0)  # px of the margins, both sides together
+
+
+class ParetoChart:
+    """Chart and legend of one browser.
+
+    Attributes:
+        limits: that the chart has, or will have as soon as it is drawn again.
+    """
+
+    def __init__(self, session: Session, designs: Designs, gui: viser.GuiApi) -> None:
+        self._session = session
+        self._designs = designs
+        self._background: tuple[tuple[object, ...], Plot] | None = None
+        self._html = Slot(gui)
+        self.limits: Limits = ((0.0, 1.0), (0.0, 1.0))
+        session.hub.on(("run", "scrub", "filter", "pins", "selection", "zoom pareto", "size", "layers"), self.draw)
+        self.draw()
+
+    @property
+    def options(self) -> ParetoOptions:
+        """What of the run is drawn."""
+        session = self._session
+        return ParetoOptions(
+            session.scrubbed, session.archive, session.infeasible, dict(session.filters), session.limits.get("pareto")
+        )
+
+    @property
+    def plot_size(self) -> tuple[float, float]:
+        """Of the plot area, px."""
+        return self._session.chart_width - _FRAME[0], self._height() - _FRAME[1]
+
+    def draw(self) -> None:
+        """Draw everything again."""
+        session, picture, options = self._session, self._session.picture, self.options
+        self.limits = options.limits or automatic_limits(picture, options)
+        objectives = picture.case.objectives
+        titles = (objective_title(objectives.first, "f₁"), objective_title(objectives.second, "f₂"))
+        # a selection moves a ring; thousands of archive points under it need not be written anew
+        key = (picture, options, titles, session.chart_width, self._height())
+        if self._background is None or not _same(self._background[0], key):
+            self._background = (key, pareto_background(picture, options, titles, session.chart_width, self._height()))
+        svg = pareto_chart(picture, self._background[1], self._marks())
+        keys = [("circle", "level1", "level 1 front")]
+        if picture.last_of_level(2) is not None:
+            keys.append(("circle", "level2", "level 2 front"))
+        if session.archive:
+            keys.append(("circle", "archive", "archive"))
+        if session.infeasible:
+            keys.append(("circle", "infeasible", "infeasible"))
+        keys.append(("square", "initial", "initial"))
+        if picture.compromise is not None:
+            keys += [("star", "compromise", "compromise"), ("diamond", "knee", "knee")]
+        if bool(picture.by_hand.any()):
+            keys.append(("square", "hand", "by hand"))
+        if session.pins:
+            keys.append(("triangle", "pin1", "pinned"))
+        self._html.show(box(svg + legend(keys)))
+
+    def _height(self) -> float:
+        return min(max(0.5 * self._session.size[1] - 178.0, 190.0), 400.0)
+
+    def _marks(self) -> list[ParetoMark]:
+        session = self._session
+        initial = self._designs.first().evaluation.objectives
+        marks = [_mark(initial, "square", 4.5, "initial", "initial design")]
+        for index, item in enumerate(session.pins):
+            marks.append(_mark(item.evaluation.objectives, "triangle", 5.5, f"pin{index + 1}", f"pinned: {item.label}"))
+        selected = session.selected
+        if selected is not None:
+            title = f"selected: {selected.label}"
+            marks.append(_mark(selected.evaluation.objectives, "ring", 8.0, "selected", title))
+        return [mark for mark in marks if mark is not None]
+
+
+def _same(first: tuple[object, ...], second: tuple[object, ...]) -> bool:
+    """Whether the very same picture (arrays are not compared) is drawn in the same way."""
+    return first[0] is second[0] and first[1:] == second[1:]
+
+
+def _mark(objectives: Mapping[str, float | None], shape: str, size: float, css: str, title: str) -> ParetoMark | None:
+    f1, f2 = objectives.get("f1"), objectives.get("f2")
+    if f1 is None or f2 is None:
+        return None
+    return ParetoMark(float(f1), float(f2), shape, size, css, title)
