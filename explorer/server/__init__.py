@@ -1,0 +1,6 @@
+"""Between viser and the page: everything that leans on private facts of this very viser.
+
+A file for a thought: ``security`` (a server that only its own user can drive), ``guard`` (what a browser may say to a
+widget), ``bridge`` (gestures on charts, told to Python), ``html_slot`` (the one door by which HTML goes to a browser),
+``widgets`` (values set from Python), ``worker`` (a thread that always does the newest thing asked for).
+"""

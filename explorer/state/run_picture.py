@@ -9,7 +9,6 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hpsop_core.case.case import Case
-from hpsop_core.evaluation.result import Evaluation
 
 IDLE, STARTING, RUNNING, PAUSED, STOPPING, STOPPED, FINISHED, FAILED = (
     "idle",
@@ -52,7 +51,6 @@ class RunPicture:
         columns: quantity keys of the table.
         generations: finished generations in order.
         compromise, knee: ids on the newest front, or None.
-        initial: the initial design's evaluation by level.
         seconds_left: an honest guess, or None.
         elapsed: seconds of work so far.
     """
@@ -74,7 +72,6 @@ class RunPicture:
     generations: tuple[GenerationPicture, ...] = ()
     compromise: int | None = None
     knee: int | None = None
-    initial: Mapping[int, Evaluation] = field(default_factory=dict)
     seconds_left: float | None = None
     elapsed: float = 0.0
 

@@ -54,7 +54,6 @@ class SceneView:
         self._abeam = 0.0
         self._spinning = threading.Event()
         self._dark: bool | None = None
-        self.shown_design: object = None
         client.scene.configure_default_lights(cast_shadow=False)
         # light from below as well: half of what a naval architect looks at is under water
         client.scene.add_light_hemisphere(
@@ -109,7 +108,6 @@ class SceneView:
                 self._draw_ship(geometry, behind, ghost_colour)
             self._client.flush()
             self._drawn = state
-            self.shown_design = shown.design_id if shown.design_id is not None else shown.kind
             # A ship of another size is framed anew, unless the user has moved the camera.
             other = before is None or abs(before[0] - self._framed[0]) > 0.02 * before[0] or was_abeam != self._abeam
             if before is None or (other and self._unmoved()):
