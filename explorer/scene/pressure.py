@@ -34,7 +34,8 @@ class PressureMap:
         """(n,) a third of the triangles around each vertex, m2."""
         corners = self.vertices[self.faces]
         area = 0.5 * np.linalg.norm(np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0]), axis=1)
-        return np.bincount(self.faces.ravel(), np.repeat(area / 3.0, 3), minlength=len(self.vertices))
+        shares: Array = np.bincount(self.faces.ravel(), np.repeat(area / 3.0, 3), len(self.vertices)).astype(np.float64)
+        return shares
 
 
 def hull_map(field: PressureField, geometry: SceneGeometry) -> PressureMap:

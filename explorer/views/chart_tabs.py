@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from explorer.charts.curves import (
     DesignCurves,
-    HullLines,
     Series,
     best_chart,
     body_plan,
@@ -20,6 +19,7 @@ from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.views.charts_view import ChartTab
 from explorer.views.on_display import overlaid
+from hpsop_core.evaluation.curves import HullLines
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import escape
 
