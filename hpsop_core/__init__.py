@@ -21,6 +21,13 @@ report             a run as one HTML file
 >>> evaluate(load_case("dtc-p4119-paper")).objectives["f1"]
 1.0
 
+What stands where, from the ground up: ``typing_aliases``, ``errors``, ``version``, ``model_test``, ``markup``
+(escaping), ``one_thread`` (the same bits everywhere) and ``assets`` (shipped files); ``geometry`` (shapes), ``hydro``
+(solvers), ``case`` (what the user states), ``evaluation`` (a design's numbers), ``quantities`` (how they are
+written), ``optimization`` (the search), ``runs`` (the file, the workers, the controller); ``export``, ``report``,
+``validation`` and ``reproduction``; ``cli`` (the commands). Each imports only from those before it; each folder's
+docstring says what its files are for.
+
 SI units, radians inside; ship axes x forward from the after perpendicular, y to port, z up (docs/conventions.md).
 Everything is frozen. Bad input raises ``hpsop_core.errors.InputError``, one line with the remedy.
 """
@@ -29,6 +36,8 @@ from __future__ import annotations
 
 import importlib
 from typing import TYPE_CHECKING, Any
+
+from hpsop_core.version import __version__
 
 if TYPE_CHECKING:
     from hpsop_core.case.case import load_case
@@ -41,7 +50,6 @@ if TYPE_CHECKING:
     from hpsop_core.report.report import write_report as report
     from hpsop_core.runs import open_run, optimize
 
-__version__ = "0.1.0"
 __all__ = [
     "__version__",
     "evaluate",

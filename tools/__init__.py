@@ -1,0 +1,7 @@
+"""Tools around the project, not installed with it.
+
+* case_reference: docs/case.md from the declarations of the fields
+* fit_dtc: the shipped hull from the offsets of the reference ship; dtc_sections: those offsets, read
+* pictures: a folder: the pictures of the docs
+* chromium: which Chromium shows the page without a screen, and how it starts
+"""

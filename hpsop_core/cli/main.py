@@ -8,8 +8,8 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from hpsop_core import __version__
 from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.version import __version__
 
 USAGE_ERROR = 2
 

@@ -11,7 +11,6 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
-from hpsop_core import __version__
 from hpsop_core.case.case import Case
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.reference import Reference, reference_for
@@ -21,6 +20,7 @@ from hpsop_core.export import tables
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.runs.reader import RunReader
+from hpsop_core.version import __version__
 
 FORMATS = ("stl", "glb", "3dm", "dxf", "csv", "json")
 

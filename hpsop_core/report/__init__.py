@@ -1,4 +1,10 @@
-"""A run as one HTML file to print or pass on; called, it is ``report`` of the Python interface."""
+"""A run as one HTML file to print or pass on; called, it is ``report`` of the Python interface.
+
+* report: the file from a run, chapter by chapter
+* words: what the case assumes and how far its numbers can be trusted; tables: the tables
+* charts: the charts, values in, figures out; figures: how a figure becomes inline SVG
+* html_page: the file's frame and how it is put in its place
+"""
 
 from __future__ import annotations
 

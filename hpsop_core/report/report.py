@@ -11,7 +11,6 @@ from pathlib import Path
 
 import numpy as np
 
-from hpsop_core import __version__
 from hpsop_core.case.case import Case
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.curves import hull_lines, resistance_points, thrust_curves
@@ -36,6 +35,7 @@ from hpsop_core.report.words import assumptions, trust
 from hpsop_core.runs.reader import RunReader
 from hpsop_core.runs.records import DesignRecord
 from hpsop_core.typing_aliases import Array
+from hpsop_core.version import __version__
 
 CHART_ABOVE = 0.03
 """Resistance is drawn this far above the greatest Froude number: beyond, the curve would dwarf the working range."""

@@ -1,0 +1,6 @@
+"""The paper beside hpsop: its printed tables, a run of its case, and what agrees.
+
+* paper: the printed tables and what follows from them alone
+* comparison: every number of a run beside the paper's, as values
+* page: the comparison as one HTML file; reproduce: the folder with it and its tables
+"""

@@ -6,7 +6,6 @@ import dataclasses
 import time
 from collections.abc import Sequence
 
-from hpsop_core import __version__
 from hpsop_core.evaluation.curves import resistance_points, thrust_curves
 from hpsop_core.evaluation.hull_answer import ResistancePoint
 from hpsop_core.evaluation.result import Evaluation
@@ -25,6 +24,7 @@ from hpsop_core.reproduction.comparison import (
     thrust_with_absolute_pitch,
     wave_part,
 )
+from hpsop_core.version import __version__
 
 _ABOVE = 0.03
 _GENERATIONS_SHOWN = 4

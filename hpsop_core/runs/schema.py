@@ -70,7 +70,7 @@ def software_versions() -> dict[str, str]:
         versions["hpsop"] = importlib.metadata.version("hpsop")
     except importlib.metadata.PackageNotFoundError:
         # Run from a checkout that was never installed.
-        from hpsop_core import __version__
+        from hpsop_core.version import __version__
 
         versions["hpsop"] = __version__
     versions["python"] = platform.python_version()

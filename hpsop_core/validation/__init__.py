@@ -1,4 +1,9 @@
-"""Validation: our numbers beside experiments, published codes and closed forms."""
+"""Validation: our numbers beside experiments, published codes and closed forms, printed by ``hpsop validate``.
+
+* check: one line of it: a number, what it is held against, and how far it may be off
+* hull, resistance, rankine, propeller_level1, propeller_level2: the lines of a discipline
+* rankine_studies, propeller_studies: sweeps that validation, pictures and docs share
+"""
 
 from __future__ import annotations
 
