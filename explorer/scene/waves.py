@@ -25,7 +25,7 @@ class WaveSurface:
         vertices: (n, 3) m in ship axes at true scale; faces: (m, 3).
         elevation: (n,) m.
         opacity: (n,) from 1 to 0 at the rim.
-        note: what it is, for the legend.
+        note: what it is, for the legend (HTML).
     """
 
     vertices: Array
@@ -58,14 +58,11 @@ def wave_surface(field: WaveField) -> WaveSurface:
 
 def _note(field: WaveField) -> str:
     if field.spectrum is None:
-        return f"level 2, Rankine panels, Fn {field.froude_number:.3f}"
+        return f"level 2, Rankine panels, Fn {field.froude_number:.3f}; true scale"
     scaled = abs(field.wave_calibration - 1.0) > 1e-9
+    heights = f", heights × √{field.wave_calibration:.3g}" if scaled else ""
     share = f"{100.0 * field.spectrum.drawn_share:.0f} %"
-    return (
-        "level 1, Kelvin pattern of Michell's spectrum"
-        + (f", heights × √{field.wave_calibration:.3g}" if scaled else "")
-        + f"; the waves long enough to be drawn carry {share} of the wave resistance"
-    )
+    return f"level 1, Kelvin pattern{heights}; true scale<br>long enough to be drawn: {share} of R<sub>W</sub>"
 
 
 def _panel_sheet(field: WaveField) -> tuple[Array, Array, Array]:

@@ -1,9 +1,9 @@
 """Services: what stands between the page and hpsop_core.
 
 A file for a thought: ``services`` (both in one piece), ``designs`` (numbers, curves, shapes and fields of a design of
-the run on display), ``physics`` (the same for any case, without a page), ``runs`` (start, open, control, extend,
-delete), ``run_keeper`` (one run file and its controller), ``library`` (the folder of runs); ``display`` (the little
-that services may see and do of the state).
+the run on display), ``answers`` (the same for any case, without a page), ``remembered`` (the cache they share),
+``runs`` (start, open, control, extend, delete), ``run_keeper`` (one run file and its controller), ``library`` (the
+folder of runs); ``display`` (the little that services may see and do of the state).
 
 Services never meet a view: what changes, they show on the ``Display``, and the state's hub tells the views.
 """

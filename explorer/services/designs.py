@@ -10,8 +10,9 @@ from numpy.typing import NDArray
 from explorer.charts.curves import DesignCurves
 from explorer.scene.geometry import SceneGeometry, ghost_segments, scene_geometry
 from explorer.scene.pressure import PressureMap, blade_map, hull_map
+from explorer.services.answers import Answers
 from explorer.services.display import Display
-from explorer.services.physics import Physics, Remembered
+from explorer.services.remembered import Remembered
 from explorer.state.shown import Shown
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
@@ -42,7 +43,7 @@ class Designs:
     def __init__(self, display: Display) -> None:
         self._display = display
         self._source: DesignSource | None = None
-        self._physics = Physics()
+        self._answers = Answers()
         self._geometry: Remembered[SceneGeometry] = Remembered(24)
         self._waves: Remembered[WaveField] = Remembered(6)
         self._pressure: Remembered[PressureMap] = Remembered(8)
@@ -75,7 +76,7 @@ class Designs:
         case, source = self.case, self._source
         evaluation = source.initial(level) if source is not None else None
         if evaluation is None or evaluation.variables != case.initial.variables:
-            evaluation = self._physics.initial(case, level)
+            evaluation = self._answers.initial(case, level)
         return Shown("Initial design", evaluation, kind="initial")
 
     def first(self) -> Shown:
@@ -84,7 +85,7 @@ class Designs:
 
     def whatif(self, variables: DesignVariables, level: int = 1) -> Shown:
         """A design of the user's own making, evaluated now."""
-        return Shown("What-if", self._physics.evaluate(self.case, variables, level), kind="whatif")
+        return Shown("What-if", self._answers.evaluate(self.case, variables, level), kind="whatif")
 
     def again(self, saved: object) -> Shown | None:
         """The design that ``Shown.saved`` described, or None where it no longer exists."""
@@ -102,20 +103,20 @@ class Designs:
 
     def reference(self, level: int) -> Reference:
         """What normalises at a level."""
-        return self._physics.reference(self.case, level)
+        return self._answers.reference(self.case, level)
 
     # ---- curves and lines ------------------------------------------------------------------------------------------
     def curves(self, evaluation: Evaluation) -> DesignCurves:
         """Resistance and thrust against Froude number."""
-        return self._physics.curves(self.case, evaluation)
+        return self._answers.curves(self.case, evaluation)
 
     def known_curves(self, evaluation: Evaluation) -> DesignCurves | None:
         """The same where it has been computed."""
-        return self._physics.known_curves(self.case, evaluation)
+        return self._answers.known_curves(self.case, evaluation)
 
     def lines(self, variables: DesignVariables) -> HullLines:
         """Sections and areas."""
-        return self._physics.lines(self.case, variables)
+        return self._answers.lines(self.case, variables)
 
     # ---- the 3D view -----------------------------------------------------------------------------------------------
     def geometry(self, variables: DesignVariables) -> SceneGeometry:

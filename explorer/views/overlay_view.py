@@ -80,7 +80,7 @@ class OverlayView:
         opacity = _WATER_OPACITY * surface.opacity
         mesh = painted(surface.vertices, surface.faces, surface.elevation, (-reach, 0.0, reach), SEA, opacity)
         self._show("waves", "/waves", mesh)
-        self._session.set_legend("waves", sea_legend(reach, f"{surface.note}; true scale"))
+        self._session.set_legend("waves", sea_legend(reach, surface.note))
 
     def _pressure(self, shown: Shown, index: int) -> None:
         found = self._designs.hull_pressure(shown.evaluation, index)

@@ -17,7 +17,7 @@ from explorer.charts.plot import Plot, smooth, tick_texts, ticks
 from explorer.scene.camera import PRESETS, preset
 from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, ramp
 from explorer.scene.transfer import transferred
-from explorer.services.physics import Physics
+from explorer.services.answers import Answers
 from explorer.state.shown import Shown
 from explorer.views.tables import many_table
 from hpsop_core.case.case import Case, load_case
@@ -36,13 +36,13 @@ def case() -> Case:
 
 
 @pytest.fixture(scope="module")
-def physics() -> Physics:
-    return Physics()
+def answers() -> Answers:
+    return Answers()
 
 
 @pytest.fixture(scope="module")
-def initial(case: Case, physics: Physics) -> Evaluation:
-    return physics.initial(case, 1)
+def initial(case: Case, answers: Answers) -> Evaluation:
+    return answers.initial(case, 1)
 
 
 # ---- charts ----------------------------------------------------------------------------------------------------------
@@ -79,10 +79,10 @@ def test_operating_points_lie_on_the_curves_and_on_the_required_thrust(initial: 
             assert abs(np.interp(x, *needed) - y) < 1.0
 
 
-def test_the_conditions_lie_on_the_resistance_and_thrust_curves(case: Case, physics: Physics):
+def test_the_conditions_lie_on_the_resistance_and_thrust_curves(case: Case, answers: Answers):
     variables = dataclasses.replace(case.initial.variables, length_to_breadth=7.6, blade_count=4, pitch_ratio=0.97)
-    evaluation = physics.evaluate(case, variables, 1)
-    curves = physics.curves(case, evaluation)
+    evaluation = answers.evaluate(case, variables, 1)
+    curves = answers.curves(case, evaluation)
     for index, condition in enumerate(evaluation.conditions):
         at = int(np.argmin(np.abs(curves.froude_number - condition.froude_number)))
         assert abs(curves.froude_number[at] - condition.froude_number) < 1e-9
@@ -130,8 +130,8 @@ def test_numbers_and_changes_for_people():
     assert change_text(1.0, 1.00001, 4) == "0.0 %"
 
 
-def test_the_body_plan_encloses_the_sectional_areas(case: Case, physics: Physics):
-    lines = physics.lines(case, case.initial.variables)
+def test_the_body_plan_encloses_the_sectional_areas(case: Case, answers: Answers):
+    lines = answers.lines(case, case.initial.variables)
     assert {station for station, _ in lines.sections} >= {0.0, 10.0, 20.0}
     for station, parts in lines.sections:
         if not 3.0 <= station <= 18.0:

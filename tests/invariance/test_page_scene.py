@@ -94,6 +94,10 @@ def test_the_sheet_of_waves_has_no_gap_and_looks_up(hull: Hull, fields: tuple[Wa
         starts = np.array([column[0] for column in columns])
         beside = np.interp(starts[:, 0], line[:, 0], line[:, 1], left=0.0, right=0.0)
         assert (starts[:, 1] <= beside + 1e-9).all()  # closed on the centreplane, or begins at the hull
+        assert "true scale" in surface.note
+        if field.spectrum is not None:
+            # the legend says what part of the resistance is in the picture
+            assert f"{100.0 * field.spectrum.drawn_share:.0f} % of R" in surface.note
         mesh = trimesh.Trimesh(surface.vertices, surface.faces, process=False)
         whole = mesh.area_faces > 1e-6
         assert (mesh.face_normals[whole, 2] > 0.0).all()
