@@ -62,7 +62,7 @@ def _note(field: WaveField) -> str:
     scaled = abs(field.wave_calibration - 1.0) > 1e-9
     heights = f", heights × √{field.wave_calibration:.3g}" if scaled else ""
     share = f"{100.0 * field.spectrum.drawn_share:.0f} %"
-    return f"level 1, Kelvin pattern{heights}; true scale<br>long enough to be drawn: {share} of R<sub>W</sub>"
+    return f"level 1, Kelvin pattern{heights}; true scale<br>the waves drawn carry {share} of R<sub>W</sub>"
 
 
 def _panel_sheet(field: WaveField) -> tuple[Array, Array, Array]:
