@@ -10,6 +10,9 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from hpsop_core.case.case import Case
+from hpsop_core.case.declared_variable import Variable
+from hpsop_core.case.variables import VARIABLE_TABLE, DesignVariables
 from hpsop_core.evaluation.result import Evaluation
 
 OBJECTIVE_TITLES = {
@@ -82,8 +85,8 @@ def change_text(initial: float | None, selected: float | None, decimals: int, re
     return f"{'+' if percent > 0 and text.strip('0.') else ''}{text} %"
 
 
-def _variable(name: str) -> Callable[[Evaluation], float | None]:
-    return lambda evaluation: float(getattr(evaluation.variables, name))
+def _variable(item: Variable) -> Callable[[Evaluation], float | None]:
+    return lambda evaluation: item.shown(float(getattr(evaluation.variables, item.name)))
 
 
 def _hull(name: str, scale: float = 1.0) -> Callable[[Evaluation], float | None]:
@@ -132,25 +135,27 @@ def _diameter_to_draft(evaluation: Evaluation) -> float | None:
     return evaluation.variables.diameter / evaluation.variables.draft
 
 
-VARIABLES: tuple[Quantity, ...] = (
-    Quantity("length_to_breadth", "length / breadth", "L/B", "", 3, _variable("length_to_breadth"), "Variables"),
-    Quantity("breadth_to_draft", "breadth / draft", "B/d", "", 3, _variable("breadth_to_draft"), "Variables"),
-    Quantity("draft", "draft", "d", "m", 2, _variable("draft"), "Variables"),
-    Quantity("diameter", "propeller diameter", "D", "m", 2, _variable("diameter"), "Variables"),
-    Quantity("blade_count", "blades", "Z", "", 0, _variable("blade_count"), "Variables"),
-    Quantity("pitch_ratio", "pitch multiplier", "P/P₀", "", 3, _variable("pitch_ratio"), "Variables"),
-    Quantity("displacement_ratio", "displacement ratio", "∇/∇₀", "", 3, _variable("displacement_ratio"), "Variables"),
-    Quantity("expanded_area_ratio", "expanded area ratio", "EAR", "", 3, _variable("expanded_area_ratio"), "Variables"),
-    Quantity(
-        "buoyancy_centre_shift",
-        "LCB shift / L",
-        "ΔLCB/L",
-        "%",
-        2,
-        lambda e: 100.0 * e.variables.buoyancy_centre_shift,
-        "Variables",
-    ),
-)
+def variable_quantities(initial: DesignVariables) -> tuple[Quantity, ...]:
+    """The design variables as declared, lengths with the digits that the initial's size asks for."""
+    return tuple(
+        Quantity(
+            item.name,
+            item.label,
+            item.symbol,
+            item.unit,
+            item.decimals_near(value),
+            _variable(item),
+            "Variables",
+        )
+        for item, value in zip(VARIABLE_TABLE.values(), initial.key(), strict=True)
+    )
+
+
+def free_variables(case: Case) -> list[Quantity]:
+    """The variables that a case does not fix."""
+    quantities = variable_quantities(case.initial.variables)
+    return [quantities[index] for index in case.bounds.free]
+
 
 HULL: tuple[Quantity, ...] = (
     Quantity("length", "length between perpendiculars", "L_PP", "m", 2, _hull("length"), "Hull"),

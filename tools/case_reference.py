@@ -10,7 +10,7 @@ import sys
 
 from hpsop_core.case.case import SECTIONS, SHIPPED_CASES, load_case
 from hpsop_core.case.fields import FieldRule, rules, toml_text
-from hpsop_core.case.variables import VARIABLE_RULES
+from hpsop_core.case.variables import VARIABLE_TABLE
 
 _HEAD = """# The case file
 
@@ -24,11 +24,11 @@ Files that a case names (`offsets`, `stl`, `geometry`) are relative to the case 
 _BOUNDS = """
 ## [bounds]
 
-Lower and upper bound of each design variable; equal bounds fix it. The last three are fixed at the initial design's
-values unless stated.
+Lower and upper bound of each design variable; equal bounds fix it. Not stated, these are fixed at the initial design's
+values: {optional}.
 
-| variable | unit | may be | meaning |
-|---|---|---|---|"""
+| variable | symbol | unit | may be | meaning |
+|---|---|---|---|---|"""
 
 
 def case_reference() -> str:
@@ -37,14 +37,16 @@ def case_reference() -> str:
     for name in SHIPPED_CASES:
         case = load_case(name)
         parts.append(f"* **{name}**: {case.title}. {' '.join(case.description.split())}")
-    parts.append(_BOUNDS)
-    for name, rule in VARIABLE_RULES.items():
-        parts.append(f"| {name} | {rule.unit or '-'} | {_limits(rule)} | {rule.meaning} |")
+    optional = ", ".join(name for name, variable in VARIABLE_TABLE.items() if not variable.bounds_required)
+    parts.append(_BOUNDS.format(optional=optional))
+    for name, variable in VARIABLE_TABLE.items():
+        rule = variable.rule
+        parts.append(f"| {name} | {variable.symbol} | {rule.unit or '-'} | {_limits(rule)} | {rule.meaning} |")
     for section, declaration in SECTIONS.items():
         parts.append(f"\n## [{section}]\n\n{(declaration.__doc__ or '').strip()}\n")
         parts.append("| field | default | unit | may be | meaning |\n|---|---|---|---|---|")
         for name, rule in rules(declaration).items():
-            default = getattr(declaration, name, None)
+            default = getattr(declaration, name, rule.default)
             shown = "-" if default is None else toml_text({name: default}).strip().removeprefix(f"{name} = ")
             parts.append(f"| {name} | {shown} | {rule.unit or '-'} | {_limits(rule)} | {rule.meaning} |")
     return "\n".join(parts) + "\n"

@@ -7,7 +7,7 @@ from numpy.typing import NDArray
 
 from explorer.state.run_picture import RunPicture
 from hpsop_core.markup import escape, symbol_html
-from hpsop_core.quantities import OBJECTIVES, VARIABLES, all_quantities
+from hpsop_core.quantities import OBJECTIVES, all_quantities, free_variables
 
 _RESULTS = ("block_coefficient", "total_resistance_1", "open_water_efficiency_1", "delivered_power_1", "g3")
 _LEAST = 10
@@ -47,7 +47,7 @@ def drivers_table(picture: RunPicture) -> str:
         return f'<p class="soft">Correlations appear once {_LEAST} designs have been evaluated.</p>'
     everything = {quantity.key: quantity for quantity in all_quantities(picture.case.conditions.froude_numbers)}
     results = [*OBJECTIVES, *(everything[key] for key in _RESULTS if key in everything)]
-    free = [quantity for index, quantity in enumerate(VARIABLES) if index in set(picture.case.bounds.free)]
+    free = free_variables(picture.case)
     heads = "".join(f'<th title="{escape(item.label)}">{symbol_html(item.symbol)}</th>' for item in results)
     rows = [f"<tr><th>variable</th>{heads}</tr>"]
     for variable in free:

@@ -8,8 +8,9 @@ import numpy as np
 from numpy.typing import NDArray
 
 from explorer.state.run_picture import RunPicture
+from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.markup import escape, symbol_svg
-from hpsop_core.quantities import OBJECTIVES, VARIABLES, Quantity, all_quantities, number_text
+from hpsop_core.quantities import OBJECTIVES, Quantity, all_quantities, free_variables, number_text
 
 _MOST_LINES = 350
 _RESULTS = ("block_coefficient", "total_resistance_1", "open_water_efficiency_1", "delivered_power_1")
@@ -17,8 +18,7 @@ _RESULTS = ("block_coefficient", "total_resistance_1", "open_water_efficiency_1"
 
 def axes_of(picture: RunPicture) -> list[Quantity]:
     """Free variables, a few results, and the objectives."""
-    free = set(picture.case.bounds.free)
-    chosen = [quantity for index, quantity in enumerate(VARIABLES) if index in free]
+    chosen = free_variables(picture.case)
     everything = {quantity.key: quantity for quantity in all_quantities(picture.case.conditions.froude_numbers)}
     chosen += [everything[key] for key in _RESULTS if key in everything]
     return [*chosen, *OBJECTIVES]
@@ -136,10 +136,10 @@ def _axis_limits(picture: RunPicture, quantity: Quantity, values: NDArray[np.flo
     usable = values[picture.feasible] if values is not None else np.zeros(0)
     usable = usable[np.isfinite(usable)]
     low, high = (float(usable.min()), float(usable.max())) if usable.size else (np.inf, -np.inf)
-    if quantity in VARIABLES:
-        factor = 100.0 if quantity.unit == "%" else 1.0
+    if quantity.key in VARIABLE_TABLE:
+        shown = VARIABLE_TABLE[quantity.key].shown
         bounds = picture.case.bounds.as_dict()[quantity.key]
-        low, high = min(low, factor * bounds[0]), max(high, factor * bounds[1])
+        low, high = min(low, shown(bounds[0])), max(high, shown(bounds[1]))
     if not low <= high:
         return 0.0, 1.0
     if high - low < 1e-12:

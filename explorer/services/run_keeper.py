@@ -28,7 +28,7 @@ from explorer.state.run_picture import (
 from hpsop_core.case.case import Case
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation.result import Evaluation
-from hpsop_core.quantities import VARIABLES, Quantity, all_quantities
+from hpsop_core.quantities import Quantity, all_quantities, variable_quantities
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.events import RunEvent
 from hpsop_core.runs.lock import is_being_written
@@ -274,7 +274,10 @@ class RunKeeper:
         reader = self._ensure_reader()
         case = self.case
         if not self._quantities:
-            self._quantities = (*VARIABLES, *all_quantities(case.conditions.froude_numbers))
+            self._quantities = (
+                *variable_quantities(case.initial.variables),
+                *all_quantities(case.conditions.froude_numbers),
+            )
         status, message = self._status(reader)
         if reader is None:
             return RunPicture(self.path.name, case, status, message, self.driven)

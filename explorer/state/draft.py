@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from typing import Any
 
 from hpsop_core.case.case import SECTIONS, SHIPPED_CASES, Case, case_from_toml, load_case
 from hpsop_core.case.fields import checked_value, rules
+from hpsop_core.case.variables import VARIABLE_TABLE, DesignSpace, DesignVariables
 from hpsop_core.errors import InputError
 
 
@@ -87,6 +89,26 @@ class Draft:
     def count(self) -> int:
         """How many fields differ from the preset."""
         return sum(len(fields) for fields in self.changes.values())
+
+    def initial(self) -> DesignVariables:
+        """The initial design as it stands; the preset's while the fields make no design."""
+        try:
+            return dataclasses.replace(self.base.initial, **self.changes.get("initial", {})).variables
+        except InputError:
+            return self.base.initial.variables
+
+    def search_around_initial(self) -> None:
+        """Usual bounds around the initial design for what is searched; what is fixed stays so, at its value."""
+        initial = self.initial()
+        for name, (low, high) in DesignSpace.around(initial).as_dict().items():
+            value = float(getattr(initial, name))
+            lower, upper = self.value("bounds", name)
+            if lower == upper:
+                low, high = value, value
+            elif low == high:
+                # cases usually fix this one, and this case frees it: as far as its slider goes
+                low, high = VARIABLE_TABLE[name].reach_near(value)
+            self.set("bounds", name, (low, high))
 
     def case(self) -> Case:
         """The whole case.

@@ -1,19 +1,24 @@
-"""Which fields of a case the page sets, in which folder, and how far the sliders reach."""
+"""Which fields of a case the page sets, in which folder, and in which steps."""
 
 from __future__ import annotations
 
-# How far the sliders reach: wider than the paper's Table 2, narrower than what the parents' families carry.
-SLIDER_RANGES: dict[str, tuple[float, float, float]] = {
-    "length_to_breadth": (6.0, 9.0, 0.01),
-    "breadth_to_draft": (2.6, 4.8, 0.01),
-    "draft": (12.0, 16.0, 0.01),
-    "diameter": (7.5, 10.5, 0.01),
-    "blade_count": (3, 7, 1),
-    "pitch_ratio": (0.8, 1.2, 0.001),
-    "displacement_ratio": (0.85, 1.15, 0.001),
-    "expanded_area_ratio": (0.4, 1.05, 0.001),
-    "buoyancy_centre_shift": (-0.02, 0.02, 0.0005),
-}
+from decimal import Decimal
+
+from hpsop_core.case.declared_variable import Variable, declared_variables
+from hpsop_core.case.variables import VARIABLE_TABLE, StatedVariables
+
+
+def variable_label(variable: Variable) -> str:
+    """A slider's label: the symbol and, as its thumbs stand at SI numbers, the SI unit."""
+    return f"{variable.symbol} [{variable.rule.unit}]" if variable.rule.unit else variable.symbol
+
+
+def slider_decimals(variable: Variable, value: float) -> int:
+    """Digits after the point of a slider's numbers around an initial design's value."""
+    step = Decimal(repr(variable.step_near(value))).normalize()
+    return max(0, -int(step.as_tuple().exponent))
+
+
 OPEN_FOLDERS = ("Operating conditions", "Form and objectives")
 CASE_FIELDS: tuple[tuple[str, tuple[tuple[str, str, str], ...]], ...] = (
     (
@@ -66,13 +71,10 @@ CASE_FIELDS: tuple[tuple[str, tuple[tuple[str, str, str], ...]], ...] = (
         (
             ("initial", "length", "Lpp [m]"),
             ("initial", "breadth", "B [m]"),
-            ("initial", "draft", "d [m]"),
-            ("initial", "diameter", "D [m]"),
-            ("initial", "blade_count", "Z"),
-            ("initial", "pitch_ratio", "pitch ratio"),
-            ("initial", "displacement_ratio", "∇ / parent ∇"),
-            ("initial", "expanded_area_ratio", "EAR"),
-            ("initial", "buoyancy_centre_shift", "LCB shift / L"),
+            *(
+                ("initial", name, variable_label(variable) if variable.rule.unit else variable.label)
+                for name, variable in declared_variables(StatedVariables).items()
+            ),
         ),
     ),
     (
@@ -107,7 +109,9 @@ STEPS = {
     "evaluation_time_limit": 0.1,
     "handover_margin": 0.001,
     "stagnation_tolerance": 1e-4,
-    "buoyancy_centre_shift": 1e-4,
+    # a model's dimensions are typed in tenths of a millimetre
+    **dict.fromkeys(("length", "breadth", "draft", "diameter"), 1e-4),
+    **{name: 0.1 * variable.step for name, variable in VARIABLE_TABLE.items() if variable.step},
 }
 SEARCH_FIELDS: tuple[tuple[str, str, str], ...] = (
     ("optimization", "population", "Population"),

@@ -16,13 +16,20 @@ from explorer.services.runs import Runs
 from explorer.state.app_state import AppState
 from explorer.state.draft import Draft, numbers_from_text
 from explorer.views.chips import box, chip, chips
-from explorer.views.settings_fields import CASE_FIELDS, OPEN_FOLDERS, SEARCH_FIELDS, SLIDER_RANGES, STEPS
+from explorer.views.settings_fields import (
+    CASE_FIELDS,
+    OPEN_FOLDERS,
+    SEARCH_FIELDS,
+    STEPS,
+    slider_decimals,
+    variable_label,
+)
 from hpsop_core.case.case import SHIPPED_CASES, load_case
 from hpsop_core.case.fields import checked_value, rules
-from hpsop_core.case.variables import VARIABLE_RULES
+from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.errors import InputError
 from hpsop_core.markup import escape, joined
-from hpsop_core.quantities import VARIABLES, Quantity, number_text
+from hpsop_core.quantities import number_text, variable_quantities
 
 # A field is typed digit by digit; what cannot be taken is refused when the typing has rested so long.
 _TYPING_SECONDS = 1.5
@@ -47,6 +54,7 @@ class SettingsView:
         self._serial = itertools.count(1)
         self._readouts: dict[str, Slot] = {}
         self._sliders: dict[str, Any] = {}
+        self._ends_for: dict[str, float] = {}
         self._widgets: dict[tuple[str, str], Any] = {}
         self._labels: dict[tuple[str, str], str] = {}
         with space:
@@ -62,8 +70,13 @@ class SettingsView:
                 step=1,
                 hint="processes of a run; the result is the same",
             )
-            for quantity in VARIABLES:
-                self._add_slider(quantity)
+            for key in VARIABLE_TABLE:
+                self._add_slider(key)
+            self._around = gui.add_button(
+                "Bounds around the initial design",
+                color="gray",
+                hint="free variables get usual bounds around the initial design's values, fixed ones its values",
+            )
             self._reset = gui.add_button("Reset changes to the preset", color="gray")
         with case:
             self._trouble = Slot(gui)
@@ -74,6 +87,7 @@ class SettingsView:
             self._save = gui.add_button("Save this case as TOML")
         self._workers.on_update(self._on_workers)
         self._preset.on_update(self._on_preset)
+        self._around.on_click(self._on_around)
         self._reset.on_click(self._on_reset)
         self._save.on_click(save)
         app.hub.on(("draft",), self.draw)
@@ -85,24 +99,39 @@ class SettingsView:
         return names if self._app.draft.base.name in names else [self._app.draft.base.name, *names]
 
     # ---- bounds ----------------------------------------------------------------------------------------------------
-    def _add_slider(self, quantity: Quantity) -> None:
-        low, high = self._app.draft.base.bounds.as_dict()[quantity.key]
-        least, most, step = SLIDER_RANGES[quantity.key]
-        rule = VARIABLE_RULES[quantity.key]
-        least, most = max(min(least, low), rule.lower), min(max(most, high), rule.upper)
-        kind = int if rule.kind == "integer" else float
-        label = f"{quantity.symbol} [{quantity.unit}]" if quantity.unit and quantity.unit != "%" else quantity.symbol
+    def _add_slider(self, key: str) -> None:
+        variable, value = VARIABLE_TABLE[key], getattr(self._app.draft.initial(), key)
+        low, high = (variable.typed(bound) for bound in self._app.draft.base.bounds.as_dict()[key])
+        least, most = (variable.typed(end) for end in variable.reach_near(value))
         slider = self._gui.add_multi_slider(
-            label, kind(least), kind(most), kind(step), (kind(low), kind(high)), hint=rule.meaning, marks=()
+            variable_label(variable),
+            min(least, low),
+            max(most, high),
+            variable.typed(variable.step_near(value)),
+            (low, high),
+            hint=variable.rule.meaning,
+            marks=(),
         )
         readout = Slot(self._gui)
-        self._sliders[quantity.key], self._readouts[quantity.key] = slider, readout
+        self._sliders[key], self._readouts[key], self._ends_for[key] = slider, readout, value
 
         def update(event: viser.GuiEvent[Any]) -> None:
             if event.client_id is not None:
-                self._on_bounds(quantity.key, event)
+                self._on_bounds(key, event)
 
         slider.on_update(update)
+
+    def _follow_initial(self) -> None:
+        """Ends and steps of the sliders for the initial design; they stay while only bounds change under the mouse."""
+        for key, value in self._app.draft.initial().as_dict().items():
+            if value == self._ends_for[key]:
+                continue
+            variable, slider = VARIABLE_TABLE[key], self._sliders[key]
+            self._ends_for[key] = value
+            slider.min, slider.max = (variable.typed(end) for end in variable.reach_near(value))
+            slider.step = variable.typed(variable.step_near(value))
+            slider.precision = slider_decimals(variable, value)
+            self._show_bounds(key)
 
     def _on_bounds(self, key: str, event: viser.GuiEvent[Any]) -> None:
         try:
@@ -122,7 +151,7 @@ class SettingsView:
         Raises:
             InputError: not two finite numbers within the slider, or reversed.
         """
-        slider, rule = self._sliders[key], VARIABLE_RULES[key]
+        slider, rule = self._sliders[key], VARIABLE_TABLE[key].rule
         if (
             not isinstance(value, list | tuple)
             or len(value) != 2
@@ -143,7 +172,7 @@ class SettingsView:
 
     @staticmethod
     def _typed(key: str, value: float) -> float | int:
-        return round(value) if VARIABLE_RULES[key].kind == "integer" else float(value)
+        return VARIABLE_TABLE[key].typed(value)
 
     # ---- fields ----------------------------------------------------------------------------------------------------
     def add_field(self, section: str, name: str, label: str) -> None:
@@ -235,6 +264,9 @@ class SettingsView:
             self._app.refuse(event.client_id, str(error))
             set_value(self._workers, self._runs.workers)
 
+    def _on_around(self, _event: viser.GuiEvent[Any]) -> None:
+        self._app.change_draft(Draft.search_around_initial, whole=True)
+
     def _on_reset(self, _event: viser.GuiEvent[Any]) -> None:
         self._app.change_draft(Draft.reset_all, whole=True)
 
@@ -252,13 +284,14 @@ class SettingsView:
 
     def _title(self, section: str, name: str) -> str:
         if section == "bounds":
-            return next(quantity.symbol for quantity in VARIABLES if quantity.key == name)
+            return VARIABLE_TABLE[name].symbol
         return self._labels.get((section, name), name)
 
     # ---- drawing ---------------------------------------------------------------------------------------------------
     def draw(self) -> None:
         """Readouts, marks of change, and the preset's two lines."""
         draft = self._app.draft
+        self._follow_initial()
         lines = joined(draft.base.description.strip().split("\n"), "<br>")
         try:
             draft.case()
@@ -281,10 +314,10 @@ class SettingsView:
             label = self._labels[(section, name)] + (" ●" if draft.changed(section, name) else "")
             if widget.label != label:
                 widget.label = label
-        for quantity in VARIABLES:
+        for quantity in variable_quantities(self._app.draft.initial()):
+            shown = VARIABLE_TABLE[quantity.key].shown
             low, high = draft.value("bounds", quantity.key)
-            factor = 100.0 if quantity.unit == "%" else 1.0
-            a, b = number_text(factor * low, quantity.decimals), number_text(factor * high, quantity.decimals)
+            a, b = number_text(shown(low), quantity.decimals), number_text(shown(high), quantity.decimals)
             unit = f" {quantity.unit}" if quantity.unit else ""
             mark = " ●" if draft.changed("bounds", quantity.key) else ""
             text = f"fixed at {a}{unit}" if low == high else f"{a} … {b}{unit}"

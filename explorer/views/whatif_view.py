@@ -15,33 +15,12 @@ from explorer.state.session import Session
 from explorer.state.shown import Shown
 from explorer.views.chips import box
 from explorer.views.on_display import select_design
+from explorer.views.settings_fields import slider_decimals, variable_label
 from explorer.views.tables import headline, warnings_html
-from hpsop_core.case.variables import VARIABLE_RULES, DesignVariables
+from hpsop_core.case.variables import VARIABLE_TABLE, DesignVariables
 from hpsop_core.errors import HpsopError, InputError
-from hpsop_core.quantities import VARIABLES, number_text
+from hpsop_core.quantities import number_text
 
-_STEPS = {
-    "length_to_breadth": 0.01,
-    "breadth_to_draft": 0.01,
-    "draft": 0.01,
-    "diameter": 0.01,
-    "blade_count": 1,
-    "pitch_ratio": 0.001,
-    "displacement_ratio": 0.001,
-    "expanded_area_ratio": 0.001,
-    "buoyancy_centre_shift": 0.0005,
-}
-_REACH = {
-    "length_to_breadth": (5.5, 9.5),
-    "breadth_to_draft": (2.5, 5.0),
-    "draft": (11.0, 17.0),
-    "diameter": (7.0, 11.0),
-    "blade_count": (3, 7),
-    "pitch_ratio": (0.7, 1.3),
-    "displacement_ratio": (0.8, 1.2),
-    "expanded_area_ratio": (0.35, 1.1),
-    "buoyancy_centre_shift": (-0.025, 0.025),
-}
 _LEVEL2 = "Evaluate at level 2"
 
 
@@ -55,16 +34,14 @@ class WhatIfView:
         self._own: Shown | None = None
         self._html = Slot(gui)
         self._sliders: dict[str, Any] = {}
-        for quantity in VARIABLES:
-            low, high = _REACH[quantity.key]
-            rule = VARIABLE_RULES[quantity.key]
-            kind = int if rule.kind == "integer" else float
-            unit = f" [{quantity.unit}]" if quantity.unit and quantity.unit != "%" else ""
-            slider = gui.add_slider(
-                quantity.symbol + unit, kind(low), kind(high), kind(_STEPS[quantity.key]), kind(low), hint=rule.meaning
-            )
+        self._initial = session.picture.case.initial.variables
+        for key, variable in VARIABLE_TABLE.items():
+            value = getattr(self._initial, key)
+            low, high = (variable.typed(end) for end in variable.reach_near(value))
+            step = variable.typed(variable.step_near(value))
+            slider = gui.add_slider(variable_label(variable), low, high, step, value, hint=variable.rule.meaning)
             slider.on_update(self._moved)
-            self._sliders[quantity.key] = slider
+            self._sliders[key] = slider
         self._level2 = gui.add_button(_LEVEL2, hint="Rankine panels and blade panels, about a second")
         self._add = gui.add_button("Add to the run's archive as a hand-made design", color="gray")
         self._level2.on_click(self._on_level2)
@@ -82,8 +59,20 @@ class WhatIfView:
                 raise InputError(f"what-if: {key} is not a finite number; move its slider")
             # A browser may send anything; the slider's own range is the limit.
             clamped = min(max(value, slider.min), slider.max)
-            values[key] = round(clamped) if VARIABLE_RULES[key].kind == "integer" else float(clamped)
+            values[key] = VARIABLE_TABLE[key].typed(clamped)
         return DesignVariables.from_dict(values, "what-if")
+
+    def _reach(self) -> None:
+        """Ends and steps of the sliders for the run on display."""
+        initial = self._session.picture.case.initial.variables
+        if initial == self._initial:
+            return
+        self._initial = initial
+        for key, slider in self._sliders.items():
+            variable, value = VARIABLE_TABLE[key], getattr(initial, key)
+            slider.min, slider.max = (variable.typed(end) for end in variable.reach_near(value))
+            slider.step = variable.typed(variable.step_near(value))
+            slider.precision = slider_decimals(variable, value)
 
     def _follow(self) -> None:
         shown = self._session.selected
@@ -91,6 +80,7 @@ class WhatIfView:
             return
         # the sliders' own answer must not move them: they may be further on already
         if shown is not self._own:
+            self._reach()
             for key, slider in self._sliders.items():
                 value = getattr(shown.evaluation.variables, key)
                 if value < slider.min:

@@ -21,7 +21,7 @@ from hpsop_core.case.sections import (
     OptimizationSection,
     PropellerSection,
 )
-from hpsop_core.case.variables import VARIABLE_NAMES, DesignSpace
+from hpsop_core.case.variables import VARIABLE_TABLE, DesignSpace
 from hpsop_core.errors import InputError
 
 SHIPPED_CASES = ("dtc-p4119", "dtc-p4119-paper", "dtc-p4119-power")
@@ -170,10 +170,9 @@ def _assembled(tables: Mapping[str, Any], texts: Mapping[str, Any], where: str, 
             sections["hull"] = _absolute(sections["hull"], "hull", ("offsets", "stl"), folder)
             sections["propeller"] = _absolute(sections["propeller"], "propeller", ("geometry",), folder)
         bounds = dict(tables["bounds"])
-        # The three variables that the paper does not have are fixed at the initial design's unless stated.
-        initial = sections["initial"]
-        for name in VARIABLE_NAMES[-3:]:
-            bounds.setdefault(name, (getattr(initial, name),) * 2)
+        for name, variable in VARIABLE_TABLE.items():
+            if not variable.bounds_required:
+                bounds.setdefault(name, (getattr(sections["initial"], name),) * 2)
         return Case(
             name=texts.get("name", stem),
             title=texts.get("title", texts.get("name", stem)),

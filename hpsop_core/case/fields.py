@@ -18,7 +18,8 @@ import tomli_w
 
 from hpsop_core.errors import InputError
 
-_KEY = "hpsop"
+# where a dataclass field keeps its rule
+KEY = "hpsop"
 _SPREAD_LIST = re.compile(r"\[\n((?: .*,\n)+)\]")
 Section = TypeVar("Section")
 
@@ -34,6 +35,7 @@ class FieldRule:
         lower, upper: inclusive limits of a number.
         choices: the allowed words of a choice.
         optional: whether the field may be absent (None).
+        default: what stands where a case does not state the field and its dataclass has no default.
     """
 
     kind: str
@@ -43,47 +45,48 @@ class FieldRule:
     upper: float = math.inf
     choices: tuple[str, ...] = ()
     optional: bool = False
+    default: float | None = None
 
 
 def number(default: float, lower: float, upper: float, meaning: str, unit: str = "") -> Any:
     """A real number within [lower, upper]."""
-    return dataclasses.field(default=default, metadata={_KEY: FieldRule("number", meaning, unit, lower, upper)})
+    return dataclasses.field(default=default, metadata={KEY: FieldRule("number", meaning, unit, lower, upper)})
 
 
 def optional_number(lower: float, upper: float, meaning: str, unit: str = "") -> Any:
     """A real number within [lower, upper] that may be left out."""
     rule = FieldRule("number", meaning, unit, lower, upper, optional=True)
-    return dataclasses.field(default=None, metadata={_KEY: rule})
+    return dataclasses.field(default=None, metadata={KEY: rule})
 
 
 def integer(default: int, lower: int, upper: int, meaning: str, unit: str = "") -> Any:
     """A whole number within [lower, upper]."""
-    return dataclasses.field(default=default, metadata={_KEY: FieldRule("integer", meaning, unit, lower, upper)})
+    return dataclasses.field(default=default, metadata={KEY: FieldRule("integer", meaning, unit, lower, upper)})
 
 
 def choice(default: str, choices: Sequence[str], meaning: str) -> Any:
     """One of a few words."""
-    return dataclasses.field(default=default, metadata={_KEY: FieldRule("choice", meaning, choices=tuple(choices))})
+    return dataclasses.field(default=default, metadata={KEY: FieldRule("choice", meaning, choices=tuple(choices))})
 
 
 def text(default: str, meaning: str) -> Any:
     """Free text."""
-    return dataclasses.field(default=default, metadata={_KEY: FieldRule("text", meaning)})
+    return dataclasses.field(default=default, metadata={KEY: FieldRule("text", meaning)})
 
 
 def numbers(default: tuple[float, ...], lower: float, upper: float, meaning: str, unit: str = "") -> Any:
     """A list of real numbers, each within [lower, upper]."""
-    return dataclasses.field(default=default, metadata={_KEY: FieldRule("numbers", meaning, unit, lower, upper)})
+    return dataclasses.field(default=default, metadata={KEY: FieldRule("numbers", meaning, unit, lower, upper)})
 
 
 def flag(default: bool, meaning: str) -> Any:
     """Yes or no."""
-    return dataclasses.field(default=default, metadata={_KEY: FieldRule("flag", meaning)})
+    return dataclasses.field(default=default, metadata={KEY: FieldRule("flag", meaning)})
 
 
 def rules(section: type[Any]) -> dict[str, FieldRule]:
     """The rule of every field of a section, by field name."""
-    return {field.name: field.metadata[_KEY] for field in dataclasses.fields(section) if _KEY in field.metadata}
+    return {field.name: field.metadata[KEY] for field in dataclasses.fields(section) if KEY in field.metadata}
 
 
 def unknown_name(name: str, known: Sequence[str], where: str) -> InputError:
@@ -160,7 +163,7 @@ def read_section(section: type[Section], table: Mapping[str, object], where: str
         InputError: an unknown field, or a value that its rule refuses.
     """
     known = rules(section)
-    values: dict[str, Any] = {}
+    values: dict[str, Any] = {name: rule.default for name, rule in known.items() if rule.default is not None}
     for name, value in table.items():
         if name not in known:
             raise unknown_name(name, list(known), where)

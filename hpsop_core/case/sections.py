@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from dataclasses import dataclass
 
 from hpsop_core.assets import SHIPPED_HULLS, SHIPPED_PROPELLERS
 from hpsop_core.case.fields import choice, flag, integer, number, numbers, optional_number, text
-from hpsop_core.case.variables import DesignVariables
+from hpsop_core.case.variables import DesignVariables, StatedVariables
 from hpsop_core.errors import InputError
 
 OBJECTIVES = ("resistance", "efficiency", "delivered_power", "displacement", "cavitation_margin")
@@ -51,19 +52,18 @@ class PropellerSection:
     geometry_blade_count: int = integer(3, 2, 7, "blades that the radial table was designed for")
 
 
-@dataclass(frozen=True)
-class InitialSection:
-    """The initial design: it normalises the objectives and defines V0, inside the bounds or not."""
+@dataclass(frozen=True, kw_only=True)
+class MainDimensions:
+    """What an initial design states instead of its proportions."""
 
     length: float = number(355.0, 0.1, 600.0, "Lpp", "m")
     breadth: float = number(51.0, 0.02, 100.0, "breadth", "m")
-    draft: float = number(14.5, 0.01, 40.0, "draft", "m")
-    diameter: float = number(9.0, 0.01, 20.0, "propeller diameter", "m")
-    blade_count: int = integer(3, 2, 7, "number of blades")
-    pitch_ratio: float = number(1.0, 0.5, 1.5, "multiplier on the parent propeller's pitch")
-    displacement_ratio: float = number(1.0, 0.5, 1.5, "displacement over the parent form's at these dimensions")
-    expanded_area_ratio: float = number(0.607, 0.3, 1.2, "expanded area ratio")
-    buoyancy_centre_shift: float = number(0.0, -0.05, 0.05, "shift of LCB forward as a fraction of L")
+
+
+# A dataclass takes the fields of its last base first: the main dimensions lead.
+@dataclass(frozen=True, kw_only=True)
+class InitialSection(StatedVariables, MainDimensions):
+    """The initial design: it normalises the objectives and defines V0, inside the bounds or not."""
 
     @property
     def variables(self) -> DesignVariables:
@@ -72,20 +72,12 @@ class InitialSection:
         Raises:
             InputError: its proportions are outside what a design variable may be.
         """
-        return DesignVariables.from_dict(
-            {
-                "length_to_breadth": self.length / self.breadth,
-                "breadth_to_draft": self.breadth / self.draft,
-                "draft": self.draft,
-                "diameter": self.diameter,
-                "blade_count": self.blade_count,
-                "pitch_ratio": self.pitch_ratio,
-                "displacement_ratio": self.displacement_ratio,
-                "expanded_area_ratio": self.expanded_area_ratio,
-                "buoyancy_centre_shift": self.buoyancy_centre_shift,
-            },
-            "initial",
-        )
+        proportions = {
+            "length_to_breadth": self.length / self.breadth,
+            "breadth_to_draft": self.breadth / self.draft,
+        }
+        stated = {field.name: getattr(self, field.name) for field in dataclasses.fields(StatedVariables)}
+        return DesignVariables.from_dict({**proportions, **stated}, "initial")
 
 
 @dataclass(frozen=True)

@@ -1,57 +1,148 @@
-"""Design variables and the space that they live in."""
+"""Design variables, each declared once, and the space that they live in.
+
+Fields of [initial] and [bounds], sliders, tables, charts, the report and docs/case.md are made from these entries.
+"""
 
 from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, fields
+from typing import Any
 
 import numpy as np
 
-from hpsop_core.case.fields import FieldRule, checked_value, unknown_name
+from hpsop_core.case.declared_variable import declared_variables, variable
+from hpsop_core.case.fields import checked_value, unknown_name
 from hpsop_core.errors import InputError
 from hpsop_core.typing_aliases import Array
 
-# What a variable may ever be, whatever the bounds of a case: outside, the parents' families mean nothing.
-VARIABLE_RULES: dict[str, FieldRule] = {
-    "length_to_breadth": FieldRule("number", "length over breadth, L/B", "", 3.0, 15.0),
-    "breadth_to_draft": FieldRule("number", "breadth over draft, B/d", "", 1.5, 8.0),
-    "draft": FieldRule("number", "draft, d", "m", 0.01, 40.0),
-    "diameter": FieldRule("number", "propeller diameter, D", "m", 0.01, 20.0),
-    "blade_count": FieldRule("integer", "number of blades, Z", "", 2, 7),
-    "pitch_ratio": FieldRule("number", "multiplier on the parent propeller's pitch", "", 0.5, 1.5),
-    "displacement_ratio": FieldRule("number", "displacement over the initial design's", "", 0.5, 1.5),
-    "expanded_area_ratio": FieldRule("number", "expanded area ratio, EAR", "", 0.3, 1.2),
-    "buoyancy_centre_shift": FieldRule("number", "shift of LCB forward, as a fraction of L", "", -0.05, 0.05),
-}
-VARIABLE_NAMES = tuple(VARIABLE_RULES)
-_BLADE_COUNT = VARIABLE_NAMES.index("blade_count")
+
+@dataclass(frozen=True, kw_only=True)
+class Proportions:
+    """The hull's proportions; an initial design states its main dimensions instead."""
+
+    length_to_breadth: float = variable(
+        "length / breadth",
+        "L/B",
+        "length over breadth, L/B",
+        (3.0, 15.0),
+        bounds=(0.93, 1.22),
+        reach=(0.8, 1.36),
+        initial=355.0 / 51.0,
+        step=0.01,
+        bounds_required=True,
+    )
+    breadth_to_draft: float = variable(
+        "breadth / draft",
+        "B/d",
+        "breadth over draft, B/d",
+        (1.5, 8.0),
+        bounds=(0.85, 1.28),
+        reach=(0.72, 1.42),
+        initial=51.0 / 14.5,
+        step=0.01,
+        bounds_required=True,
+    )
 
 
-@dataclass(frozen=True)
-class DesignVariables:
-    """The nine numbers that name a design: the paper's six and the three of DESIGN section 3.
+@dataclass(frozen=True, kw_only=True)
+class StatedVariables:
+    """The variables that an initial design states as they are: [initial] has these very fields.
 
-    Attributes:
-        length_to_breadth, breadth_to_draft: hull proportions.
-        draft: in m.
-        diameter: of the propeller, in m.
-        blade_count: Z.
-        pitch_ratio: multiplier on the parent propeller's pitch.
-        displacement_ratio: displacement over the initial design's.
-        expanded_area_ratio: EAR.
-        buoyancy_centre_shift: LCB's shift forward from the parent's place, as a fraction of L.
+    A new variable stands at the end: a run file names a design by its numbers in this order.
     """
 
-    length_to_breadth: float
-    breadth_to_draft: float
-    draft: float
-    diameter: float
-    blade_count: int
-    pitch_ratio: float
-    displacement_ratio: float
-    expanded_area_ratio: float
-    buoyancy_centre_shift: float
+    draft: float = variable(
+        "draft",
+        "d",
+        "draft, d",
+        (0.01, 40.0),
+        unit="m",
+        decimals=2,
+        bounds=(0.965, 1.0),
+        reach=(0.76, 1.17),
+        initial=14.5,
+        bounds_required=True,
+    )
+    diameter: float = variable(
+        "propeller diameter",
+        "D",
+        "propeller diameter, D",
+        (0.01, 20.0),
+        unit="m",
+        decimals=2,
+        bounds=(0.945, 1.055),
+        reach=(0.78, 1.22),
+        initial=9.0,
+        bounds_required=True,
+    )
+    blade_count: int = variable(
+        "blades",
+        "Z",
+        "number of blades, Z",
+        (2, 7),
+        whole=True,
+        decimals=0,
+        spread="range",
+        bounds=(3, 7),
+        reach=(3, 7),
+        initial=3,
+        step=1,
+        bounds_required=True,
+    )
+    pitch_ratio: float = variable(
+        "pitch multiplier",
+        "P/P₀",
+        "multiplier on the parent propeller's pitch",
+        (0.5, 1.5),
+        bounds=(0.95, 1.05),
+        reach=(0.7, 1.3),
+        initial=1.0,
+        step=0.001,
+        bounds_required=True,
+    )
+    displacement_ratio: float = variable(
+        "displacement ratio",
+        "∇/∇₀",
+        "displacement over the initial design's",
+        (0.5, 1.5),
+        initial_meaning="displacement over the parent form's at these dimensions",
+        bounds=(0.95, 1.05),
+        reach=(0.8, 1.2),
+        initial=1.0,
+        step=0.001,
+    )
+    expanded_area_ratio: float = variable(
+        "expanded area ratio",
+        "EAR",
+        "expanded area ratio, EAR",
+        (0.3, 1.2),
+        bounds=(1.0, 1.0),
+        reach=(0.58, 1.81),
+        initial=0.607,
+        step=0.001,
+    )
+    buoyancy_centre_shift: float = variable(
+        "LCB shift / L",
+        "ΔLCB/L",
+        "shift of LCB forward, as a fraction of L",
+        (-0.05, 0.05),
+        shown_unit="%",
+        scale=100.0,
+        decimals=2,
+        spread="shift",
+        bounds=(0.0, 0.0),
+        reach=(-0.025, 0.025),
+        initial=0.0,
+        step=0.0005,
+    )
+
+
+# A dataclass takes the fields of its last base first: the proportions lead.
+@dataclass(frozen=True, kw_only=True)
+class DesignVariables(StatedVariables, Proportions):
+    """The numbers that name a design, as its two bases declare them."""
 
     @property
     def breadth(self) -> float:
@@ -69,20 +160,31 @@ class DesignVariables:
 
     @classmethod
     def from_dict(cls, values: Mapping[str, object], where: str = "design variables") -> DesignVariables:
-        """Checked variables from a mapping of all nine names.
+        """Checked variables from a mapping of all names.
 
         Raises:
             InputError: a name is unknown or missing, or a value is no number or out of every sensible range.
         """
         for name in values:
-            if name not in VARIABLE_RULES:
+            if name not in VARIABLE_TABLE:
                 raise unknown_name(name, VARIABLE_NAMES, where)
         missing = [name for name in VARIABLE_NAMES if name not in values]
         if missing:
             raise InputError(f"{where}: '{missing[0]}' is missing; state all of {', '.join(VARIABLE_NAMES)}")
         return cls(
-            **{name: checked_value(values[name], rule, f"{where}: {name}") for name, rule in VARIABLE_RULES.items()}
+            **{
+                name: checked_value(values[name], item.rule, f"{where}: {name}")
+                for name, item in VARIABLE_TABLE.items()
+            }
         )
+
+    @classmethod
+    def from_key(cls, key: Sequence[float]) -> DesignVariables:
+        """The design of a ``key``; variables declared since the key was stored stand at [initial]'s defaults."""
+        later = [item.initial for item in VARIABLE_TABLE.values()][len(key) :]
+        pairs = zip(VARIABLE_TABLE.items(), [*key, *later], strict=True)
+        named: dict[str, Any] = {name: item.typed(value) for (name, item), value in pairs}
+        return cls(**named)
 
     def replaced(self, changes: Mapping[str, object], where: str = "design variables") -> DesignVariables:
         """The same design with some variables changed; checked like ``from_dict``."""
@@ -93,15 +195,20 @@ class DesignVariables:
         return tuple(float(getattr(self, name)) for name in VARIABLE_NAMES)
 
 
+VARIABLE_TABLE = declared_variables(DesignVariables)
+VARIABLE_NAMES = tuple(VARIABLE_TABLE)
+_BLADE_COUNT = VARIABLE_NAMES.index("blade_count")
+
+
 @dataclass(frozen=True)
 class DesignSpace:
-    """Lower and upper bounds of the nine variables; a variable with equal bounds is fixed.
+    """Lower and upper bounds of the variables; a variable with equal bounds is fixed.
 
     The optimiser works on a real vector over the free variables in which Z is relaxed to [Z_lower - 1/2, Z_upper +
     1/2) and decoded by floor(z + 1/2), so that a uniform sample gives every blade count an equal share.
 
     Attributes:
-        lower, upper: nine bounds each, in the order of ``VARIABLE_NAMES``.
+        lower, upper: a bound each, in the order of ``VARIABLE_NAMES``.
     """
 
     lower: tuple[float, ...]
@@ -116,21 +223,27 @@ class DesignSpace:
                 reversed bounds.
         """
         for name in bounds:
-            if name not in VARIABLE_RULES:
+            if name not in VARIABLE_TABLE:
                 raise unknown_name(name, VARIABLE_NAMES, where)
         lower, upper = [], []
-        for name, rule in VARIABLE_RULES.items():
+        for name, item in VARIABLE_TABLE.items():
             if name not in bounds:
                 raise InputError(f"{where}: '{name}' is missing; write {name} = [lower, upper]")
             pair = bounds[name]
             if isinstance(pair, str) or not isinstance(pair, Sequence) or len(pair) != 2:
                 raise InputError(f"{where}: {name} needs two numbers; write {name} = [lower, upper]")
-            low, high = (checked_value(value, rule, f"{where}: {name}") for value in pair)
+            low, high = (checked_value(value, item.rule, f"{where}: {name}") for value in pair)
             if low > high:
                 raise InputError(f"{where}: {name} has reversed bounds {low:g} > {high:g}; write the smaller one first")
             lower.append(float(low))
             upper.append(float(high))
         return cls(tuple(lower), tuple(upper))
+
+    @classmethod
+    def around(cls, initial: DesignVariables) -> DesignSpace:
+        """The default bounds around an initial design."""
+        pairs = [item.bounds_near(value) for item, value in zip(VARIABLE_TABLE.values(), initial.key(), strict=True)]
+        return cls(tuple(low for low, _ in pairs), tuple(high for _, high in pairs))
 
     def as_dict(self) -> dict[str, tuple[float, float]]:
         """(lower, upper) by variable name."""
@@ -172,9 +285,7 @@ class DesignSpace:
                 raise ValueError(f"{VARIABLE_NAMES[i]} is not a finite number")
             decoded = math.floor(float(value) + 0.5) if i == _BLADE_COUNT else float(value)
             values[i] = min(max(float(decoded), self.lower[i]), self.upper[i])
-        named = dict(zip(VARIABLE_NAMES, values, strict=True))
-        blade_count = round(named.pop("blade_count"))
-        return DesignVariables(blade_count=blade_count, **named)
+        return DesignVariables.from_key(values)
 
     def encode(self, variables: DesignVariables) -> Array:
         """The free vector, shape (free,), that decodes to ``variables`` if they lie inside the bounds."""
@@ -183,15 +294,9 @@ class DesignSpace:
 
     def project(self, variables: DesignVariables) -> DesignVariables:
         """The nearest design inside the bounds, variable by variable."""
-        clamped = {
-            name: min(max(value, low), high)
-            for name, value, low, high in zip(VARIABLE_NAMES, variables.key(), self.lower, self.upper, strict=True)
-        }
-        blade_count = round(clamped.pop("blade_count"))
-        return DesignVariables(blade_count=blade_count, **clamped)
-
-    def contains(self, variables: DesignVariables) -> bool:
-        """Whether a design lies inside the bounds."""
-        return all(
-            low <= value <= high for value, low, high in zip(variables.key(), self.lower, self.upper, strict=True)
+        return DesignVariables.from_key(
+            [
+                min(max(value, low), high)
+                for value, low, high in zip(variables.key(), self.lower, self.upper, strict=True)
+            ]
         )

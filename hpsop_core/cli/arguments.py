@@ -12,7 +12,7 @@ from typing import Any
 
 from hpsop_core.case.case import Case, load_case
 from hpsop_core.case.fields import FieldRule, checked_value
-from hpsop_core.case.variables import VARIABLE_NAMES, VARIABLE_RULES, DesignVariables
+from hpsop_core.case.variables import VARIABLE_NAMES, VARIABLE_TABLE, DesignVariables
 from hpsop_core.errors import InputError
 
 
@@ -122,6 +122,6 @@ def print_table(header: Sequence[str], rows: Sequence[Sequence[str]]) -> None:
 def describe_variables(variables: DesignVariables) -> list[str]:
     """One line a variable: name, value, unit."""
     return [
-        f"  {name:<24}{value:>12.6g} {VARIABLE_RULES[name].unit}".rstrip()
+        f"  {name:<24}{value:>12.6g} {VARIABLE_TABLE[name].rule.unit}".rstrip()
         for name, value in variables.as_dict().items()
     ]

@@ -18,11 +18,12 @@ from hpsop_core.quantities import (
     OBJECTIVE_TITLES,
     OBJECTIVES,
     PROPELLER,
-    VARIABLES,
     Quantity,
     change_text,
     condition_quantities,
+    free_variables,
     number_text,
+    variable_quantities,
     violated,
 )
 from hpsop_core.report.html_page import facts, symbol, table, text
@@ -44,7 +45,8 @@ def result_quantities(case: Case) -> tuple[Quantity, ...]:
     """The rows of the result table, in their order."""
     conditions = condition_quantities(case.conditions.froude_numbers)
     kept = tuple(q for q in conditions if q.key.rsplit("_", 1)[0] in _IN_RESULT)
-    pitch = tuple(dataclasses.replace(q, group="Propeller") for q in VARIABLES if q.key == "pitch_ratio")
+    variables = variable_quantities(case.initial.variables)
+    pitch = tuple(dataclasses.replace(q, group="Propeller") for q in variables if q.key == "pitch_ratio")
     return (*OBJECTIVES, *kept, *HULL, *PROPELLER, *pitch)
 
 
@@ -103,7 +105,7 @@ def broken_constraints(evaluation: Evaluation) -> list[str]:
 
 def front_table(case: Case, front: Sequence[DesignRecord], marks: Mapping[int, str]) -> str:
     """The whole front: objectives, free variables, main numbers of each condition."""
-    free = [quantity for index, quantity in enumerate(VARIABLES) if index in set(case.bounds.free)]
+    free = free_variables(case)
     names = ("total_resistance", "open_water_efficiency", "delivered_power")
     per_condition = [
         quantity
@@ -135,7 +137,7 @@ def rank_correlation(first: Array, second: Array) -> float | None:
 
 def correlations(case: Case, evaluations: Sequence[Evaluation]) -> tuple[list[Quantity], list[Quantity], list[Any]]:
     """(free variables, results, rho by row and column) over evaluations of one level that did not fail."""
-    free = [quantity for index, quantity in enumerate(VARIABLES) if index in set(case.bounds.free)]
+    free = free_variables(case)
     wanted = ("total_resistance_1", "open_water_efficiency_1", "delivered_power_1", "required_expanded_area_ratio_1")
     conditions = {quantity.key: quantity for quantity in condition_quantities(case.conditions.froude_numbers)}
     results = [*OBJECTIVES, *(conditions[key] for key in wanted)]

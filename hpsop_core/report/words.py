@@ -4,7 +4,8 @@
 from __future__ import annotations
 
 from hpsop_core.case.case import Case
-from hpsop_core.quantities import OBJECTIVE_TITLES, VARIABLES, number_text
+from hpsop_core.case.variables import VARIABLE_TABLE
+from hpsop_core.quantities import OBJECTIVE_TITLES, number_text, variable_quantities
 from hpsop_core.report.html_page import bullets, facts, symbol, table, text
 
 _FORM = {
@@ -94,10 +95,10 @@ def assumptions(case: Case) -> str:
 def _design_space(case: Case) -> str:
     initial = case.initial.variables.as_dict()
     rows = []
-    for quantity in VARIABLES:
+    for quantity in variable_quantities(case.initial.variables):
         lower, upper = case.bounds.as_dict()[quantity.key]
-        scale = 100.0 if quantity.unit == "%" else 1.0
-        numbers = [number_text(scale * value, quantity.decimals) for value in (initial[quantity.key], lower, upper)]
+        shown = VARIABLE_TABLE[quantity.key].shown
+        numbers = [number_text(shown(value), quantity.decimals) for value in (initial[quantity.key], lower, upper)]
         unit = f" <span class=unit>[{text(quantity.unit or '–')}]</span>"
         spread = numbers[1:] if lower < upper else [numbers[1], "fixed"]
         rows.append([f"{text(quantity.label)} {symbol(quantity.symbol)}{unit}", numbers[0], *spread])

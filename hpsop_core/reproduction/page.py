@@ -6,10 +6,11 @@ import dataclasses
 import time
 from collections.abc import Sequence
 
+from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.evaluation.curves import resistance_points, thrust_curves
 from hpsop_core.evaluation.hull_answer import ResistancePoint
 from hpsop_core.evaluation.result import Evaluation
-from hpsop_core.quantities import VARIABLES, change_text, number_text, objective_title
+from hpsop_core.quantities import change_text, number_text, objective_title
 from hpsop_core.report import charts
 from hpsop_core.report.charts import COMPROMISE_LOOK, INITIAL_LOOK, Look, PaperPoints, Point
 from hpsop_core.report.figures import FRONT, LEVEL_COLOURS, SERIES, SOFT, figure_html
@@ -231,13 +232,12 @@ def _html(made: Table, wide: bool = False, marked: Sequence[int] = ()) -> str:
 
 
 def _table2(made: Table) -> str:
-    labels = {quantity.key: quantity.label for quantity in VARIABLES}
-    units = {quantity.key: quantity.unit or "–" for quantity in VARIABLES}
     rows: list[tuple[Cell, ...]] = []
     for name, *limits in made.rows:
         # Blades are counted.
         shown = [f"{value:.0f}" for value in limits] if name == "blade_count" else limits
-        rows.append((f"{labels[str(name)]} [{units[str(name)]}]", *shown))
+        variable = VARIABLE_TABLE[str(name)]
+        rows.append((f"{variable.label} [{variable.unit or '–'}]", *shown))
     return _html(dataclasses.replace(made, rows=tuple(rows)))
 
 

@@ -8,7 +8,7 @@ import json
 from dataclasses import dataclass
 from typing import Any
 
-from hpsop_core.case.variables import VARIABLE_NAMES, DesignVariables
+from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.optimization.generation import Generation
@@ -114,9 +114,7 @@ def variables_text(variables: DesignVariables) -> str:
 
 def named_variables(text: str) -> dict[str, float | int]:
     """The variables that ``variables_text`` wrote, by name."""
-    values = dict(zip(VARIABLE_NAMES, json.loads(text), strict=True))
-    values["blade_count"] = round(values["blade_count"])
-    return values
+    return DesignVariables.from_key(json.loads(text)).as_dict()
 
 
 def generation_text(generation: Generation) -> str:
