@@ -68,7 +68,7 @@ class Outcome:
 
     @classmethod
     def from_json(cls, evaluation_id: int, data: Mapping[str, Any]) -> Outcome:
-        """The outcome in an evaluation's JSON document (DESIGN section 4); anything not finite counts as failed."""
+        """The outcome in an evaluation's JSON (``hpsop evaluate --json``); anything not finite counts as failed."""
         failed = cls(evaluation_id, None, (), False)
         if data.get("status") != "ok":
             return failed

@@ -27,7 +27,7 @@ def _bound(quantity: str, computed: float, bound: float, source: str, below: boo
 
 def _recorded_deviations() -> Iterator[Check]:
     """Distances of the reference offsets from the patches, as the fitting script recorded them."""
-    source = "issue's limit; recorded by tools.fit_dtc from the fine offsets"
+    source = "a shell plate's thickness, 10 at single points; recorded by tools.fit_dtc from the fine offsets"
     for patch in json.loads(read_asset_text("hulls", "dtc.json"))["patches"]:
         deviation = patch["deviation"]
         yield _bound(f"DTC patch {patch['name']}, rms deviation [m]", deviation["rms_m"], 0.025, source)

@@ -179,7 +179,7 @@ def _tank() -> Iterator[Check]:
     at_218, at_27 = result.conditions[-2:]
     name = "DTC, Cw at Fn 0.218 by plane"
     yield range_check(GROUP, name, at_218.wave_coefficient, 2.5e-4, 4.0e-4, 3.36e-4, TANK_SOURCE)
-    source = "no test exists above Fn 0.218; bracket of prototypes"
+    source = "no test exists above Fn 0.218; bracket of earlier versions of this solver"
     yield range_check(GROUP, "DTC, Cw at Fn 0.27 by plane", at_27.wave_coefficient, 5e-4, 9e-4, 7e-4, source)
 
 
@@ -221,7 +221,8 @@ def _block() -> Iterator[Check]:
         waves = float(shoulder[hollow]) / (2.0 * np.pi * number**2 * 355.0)
         yield range_check(GROUP, name, waves, 0.8, 1.1, 1.0, source)
         name = f"the wall: wave resistance at CB {blocks[-1]:.3f} / least, Fn {number:g}"
-        yield range_check(GROUP, name, float(areas[-1, k] / areas[hollow, k]), 2.0, 6.0, 3.0, "prototypes")
+        rise = float(areas[-1, k] / areas[hollow, k])
+        yield range_check(GROUP, name, rise, 2.0, 6.0, 3.0, "earlier versions of this solver")
 
 
 def _mesh() -> Iterator[Check]:

@@ -69,7 +69,7 @@ def test_endless_pitch_gives_straight_vortices() -> None:
     """One blade: a semi-infinite straight vortex, 1/(4 pi h)."""
     for control, vortex in ((0.8, 0.6), (0.3, 0.9)):
         axial, tangential = wrench_velocities(np.array(control), np.array(vortex), np.array(1e9), 1)
-        # 1 %, the issue's tolerance, would hide a wrong term; the limit is exact
+        # 1 % would hide a wrong term; the limit is exact
         assert float(tangential) == pytest.approx(1.0 / (4.0 * np.pi * (control - vortex)), rel=1e-6)
         assert abs(float(axial)) < 1e-6
 

@@ -29,7 +29,7 @@ def parent_result() -> RankineResult:
 
 
 def test_total_resistance_at_the_six_tank_points(parent_result: RankineResult) -> None:
-    # 6 % is the issue's bound at every one of the six; a wave part of zero would miss it at .218 (8 %).
+    # 6 % at every one of the six: with no waves at all .218 would be 8 % off, and must fail here.
     for row, condition in zip(tank(), parent_result.conditions, strict=False):
         total = (1.0 + FORM_FACTOR) * row["friction_coefficient"] + condition.wave_coefficient
         assert total == pytest.approx(row["total_coefficient"], rel=0.06)
@@ -37,7 +37,7 @@ def test_total_resistance_at_the_six_tank_points(parent_result: RankineResult) -
 
 def test_wave_coefficient_of_the_parent(parent_result: RankineResult) -> None:
     # The tank gives 3.36e-4 at .218 (with k = .094; dk = .01 is 9 %); above .218 there is no test, only the bracket of
-    # the issue.
+    # what earlier versions of this solver gave.
     at_218, at_27 = parent_result.conditions[-2:]
     assert 2.5e-4 < at_218.wave_coefficient < 4.0e-4
     assert 5e-4 < at_27.wave_coefficient < 9e-4

@@ -12,7 +12,6 @@ from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.geometry.analytic_bodies import wigley_panels
 from hpsop_core.geometry.hull.form import LongitudinalShift
 from hpsop_core.geometry.hull.hull import load_parent_hull
-from hpsop_core.geometry.hull.hydrostatics import volume_and_centre
 from hpsop_core.geometry.hull.panels import HullPanels, grid_quads
 from hpsop_core.hydro.rankine.checks import check_panels
 from hpsop_core.hydro.rankine.solver import RankineSettings, solve, solve_panels, solver_axes
@@ -46,7 +45,8 @@ def test_folded_form(amplitude: float, sign: tuple[float, float]) -> None:
     shift = LongitudinalShift(parent.shift_frame, sign[0] * amplitude, sign[1] * amplitude)
     x = np.linspace(0.0, parent.length, 2001)
     assert np.min(shift.evaluate(x)[1]) < 0.0
-    volume, _ = volume_and_centre(parent.quadrature, shift)
+    sections = parent.quadrature
+    volume = float(np.sum(sections.area * sections.width * shift.evaluate(sections.x)[1]))
     folded = replace(hull, shift=shift, hydrostatics=replace(hull.hydrostatics, displaced_volume=volume))
     with pytest.raises(SolverFailure, match="rankine") as caught:
         solve(folded, [0.22, 0.27])

@@ -53,7 +53,7 @@ def test_wigley(tmp_path: Path, resistance: Answer) -> None:
     file = table(tmp_path / "wigley.csv", STATIONS, WATERLINES, wigley(STATIONS, WATERLINES))
     code, points, _ = resistance(file, 0.313)
     assert code == 0
-    # The experiments' range, by both values (the issue's check through the command).
+    # The range of the experiments that Chen and Noblesse (1983) gathered, by both values, through the command.
     assert 1.4e-3 < points[0]["wave_coefficient"] < 1.9e-3
     assert 1.4e-3 < points[0]["wave_coefficient_pressure"] < 1.9e-3
     assert points[0]["warnings"] == []

@@ -115,7 +115,7 @@ def test_the_table_of_wakes_is_fine_enough(blades: int, pitch: float, area: floa
 
 
 def test_smooth_in_pitch_and_area() -> None:
-    """What the optimiser feels as noise: the distance from a smooth curve. It was 3e-4 in the prototypes."""
+    """What the optimiser feels as noise: the distance from a smooth curve."""
     drag = SectionDrag.full_scale()
     steps = np.linspace(-1.0, 1.0, 11)
     for make in (

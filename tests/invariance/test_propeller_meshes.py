@@ -21,7 +21,7 @@ from hpsop_core.geometry.propeller.hub import hub_of
 from hpsop_core.geometry.propeller.mesh import propeller_mesh, propeller_view_parts
 from hpsop_core.geometry.propeller.nurbs import blade_nurbs, hub_nurbs, propeller_surfaces
 from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
-from hpsop_core.geometry.propeller.surface import key_blade
+from hpsop_core.geometry.propeller.surface import blade_points
 
 
 @pytest.mark.parametrize("blades", [2, 3, 5, 7])
@@ -69,7 +69,8 @@ def test_blades_are_alike() -> None:
 
 def test_right_handed() -> None:
     """Seen from astern it turns clockwise: the top blade goes to starboard, leading edge first."""
-    back, face = key_blade(propeller_family(load_propeller(), 2.0, 3), np.array([0.7]), np.array([0.0, 0.5, 1.0]))
+    sections = propeller_family(load_propeller(), 2.0, 3).table.at(np.array([0.7]))
+    back, face = (blade_points(sections, np.array([0.0, 0.5, 1.0]), side) for side in (True, False))
     leading, trailing = back[0, 0], back[0, 2]
     # x downstream, y to starboard, z up: the top blade's leading edge is upstream and to starboard
     assert leading[0] < trailing[0] and leading[1] > trailing[1] and leading[2] > 0.5
@@ -87,7 +88,9 @@ def test_normals_of_back_and_face() -> None:
     pitch = np.arctan2(1.0839, np.pi * 0.7)
     # theta is y at the top: n = -cos(phi) x - sin(phi) theta
     suction = np.array([-np.cos(pitch), -np.sin(pitch), 0.0])
-    for points, sign in zip(key_blade(propeller, np.array([0.7]), np.array([0.5])), (1.0, -1.0), strict=True):
+    sections = propeller.table.at(np.array([0.7]))
+    for back, sign in ((True, 1.0), (False, -1.0)):
+        points = blade_points(sections, np.array([0.5]), back)
         nearest = int(np.argmin(np.linalg.norm(mesh.triangles_center - points[0, 0], axis=1)))
         assert sign * float(mesh.face_normals[nearest] @ suction) > 0.97
 

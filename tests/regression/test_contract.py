@@ -1,4 +1,4 @@
-"""The JSON that outsiders rely on (DESIGN section 4): keys may be added, never changed."""
+"""The JSON that outsiders rely on: keys may be added, never changed."""
 
 from __future__ import annotations
 
@@ -124,5 +124,5 @@ def test_initial_design_normalises_itself() -> None:
     assert result.objectives == pytest.approx({"f1": 1.0, "f2": 1.0}, abs=1e-12)
     assert result.all_objectives["delivered_power"] == pytest.approx(1.0, abs=1e-12)
     # The paper's operating points lie near J .65 and .56 with its own resistances; with T = Rt/(1 - t) and plain
-    # Michell the propeller of the initial design works near J .42 at Fn .27 (issue: both conditions match).
+    # Michell the propeller of the initial design works near J .42 at Fn .27; both conditions find one.
     assert result.conditions[1].advance_coefficient == pytest.approx(0.42, abs=0.03)

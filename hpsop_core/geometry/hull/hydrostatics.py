@@ -152,15 +152,6 @@ def integrate_parent(
 
 
 @one_blas_thread()
-def volume_and_centre(quadrature: HullQuadrature, shift: LongitudinalShift) -> tuple[float, float]:
-    """Displaced volume (m3) and longitudinal centre of buoyancy (m) of the shifted parent, in the parent's frame."""
-    moved, stretch = shift.evaluate(quadrature.x)
-    slices = quadrature.area * quadrature.width * stretch
-    volume = float(np.sum(slices))
-    return volume, float(slices @ moved) / volume
-
-
-@one_blas_thread()
 def hydrostatics(
     quadrature: HullQuadrature,
     shift: LongitudinalShift,

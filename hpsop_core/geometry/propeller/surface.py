@@ -11,7 +11,6 @@ from dataclasses import replace
 
 import numpy as np
 
-from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.geometry.propeller.radial_table import BladeSections, RadialTable
 from hpsop_core.geometry.propeller.sections import half_thickness, mean_line
 from hpsop_core.typing_aliases import Array
@@ -124,9 +123,3 @@ def rotate_blade(points: Array, blade: int, blade_count: int) -> Array:
     x, y, z = points[..., 0], points[..., 1], points[..., 2]
     # theta grows from z towards y
     return np.stack([x, cosine * y + sine * z, cosine * z - sine * y], axis=-1)
-
-
-def key_blade(propeller: Propeller, radius_ratio: Array, chord_fraction: Array) -> tuple[Array, Array]:
-    """Back (suction side) and face of the key blade at radii (nr,) and chord fractions (nc,): two (nr, nc, 3)."""
-    sections = propeller.table.at(radius_ratio)
-    return blade_points(sections, chord_fraction, True), blade_points(sections, chord_fraction, False)

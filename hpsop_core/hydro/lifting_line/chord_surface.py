@@ -1,6 +1,6 @@
 """Points on the blades' chord surface and the normals to it.
 
-Lengths in tip radii, axes and theta as in geometry/propeller_surface.py.
+Lengths in tip radii, axes and theta as in geometry/propeller/surface.py.
 """
 
 from __future__ import annotations

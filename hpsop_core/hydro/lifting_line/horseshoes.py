@@ -1,6 +1,6 @@
 """The horseshoe vortices of the lifting line: where they lie and what they induce.
 
-Lengths in tip radii, circulation 1. Axes and theta as in geometry/propeller_surface.py.
+Lengths in tip radii, circulation 1. Axes and theta as in geometry/propeller/surface.py.
 """
 
 from __future__ import annotations

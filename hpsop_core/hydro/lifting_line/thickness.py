@@ -2,7 +2,7 @@
 
 Each blade's thickness is a sheet of sources on its chord surface. Between the blades they speed the flow up and turn
 it, so that the sections meet less incidence: the thickness correction that Morgan, Silovic and Denny (SNAME 1968)
-tabulated for design, here computed. Lengths in tip radii, axes as in geometry/propeller_surface.py.
+tabulated for design, here computed. Lengths in tip radii, axes as in geometry/propeller/surface.py.
 """
 
 from __future__ import annotations
