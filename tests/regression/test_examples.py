@@ -1,0 +1,104 @@
+"""The examples and the README's commands do what they say, run as a reader runs them (with quick settings)."""
+
+from __future__ import annotations
+
+import os
+import re
+import subprocess
+import sys
+from pathlib import Path
+
+import pytest
+
+ROOT = Path(__file__).resolve().parents[2]
+# Two are long by nature; that they parse is asserted instead.
+LONG = ("hpsop reproduce", "hpsop validate")
+QUICKER = {"optimize": ["--generations", "2", "--level1-generations", "1", "--population", "6"]}
+
+
+def run(words: list[str], folder: Path) -> str:
+    # A worker process of an example finds the package as this process does.
+    path = os.pathsep.join(entry for entry in sys.path if entry)
+    done = subprocess.run(
+        [sys.executable, *words], cwd=folder, capture_output=True, text=True, env={**os.environ, "PYTHONPATH": path}
+    )
+    assert done.returncode == 0, done.stderr
+    return done.stdout
+
+
+def example(name: str, folder: Path, *words: str) -> str:
+    return run([str(ROOT / "examples" / f"{name}.py"), *words], folder)
+
+
+def test_every_example_is_run_here() -> None:
+    text = Path(__file__).read_text(encoding="utf-8")
+    names = [path.stem for path in (ROOT / "examples").glob("*.py")]
+    assert len(names) >= 5
+    assert [name for name in names if f'example("{name}"' not in text] == []
+
+
+def test_evaluate_a_design(tmp_path: Path) -> None:
+    lines = example("evaluate_a_design", tmp_path).splitlines()
+    powers = [float(re.findall(r"PD ([0-9.]+) MW", line)[0]) for line in lines]
+    assert len(powers) == 4
+    # Slower and larger is better (momentum theory), at both levels.
+    assert powers[1] < powers[0] and powers[3] < powers[2]
+
+
+def test_sweep_length_to_breadth(tmp_path: Path) -> None:
+    rows = example("sweep_length_to_breadth", tmp_path, "--points", "2").splitlines()[2:]
+    numbers = [[float(word) for word in row.split()] for row in rows]
+    assert [row[0] for row in numbers] == [6.5, 8.5]
+    # The short ship has the greater resistance at both levels.
+    assert numbers[0][2] > numbers[1][2] and numbers[0][3] > numbers[1][3]
+
+
+def test_own_objective(tmp_path: Path) -> None:
+    out = example("own_objective", tmp_path, "--generations", "1", "--population", "4")
+    values = [(float(a), float(b)) for a, b in re.findall(r": ([0-9.]+) W/\(kN m/s\) \(([0-9.]+) of", out)]
+    assert values
+    for power, share in values:
+        # One initial design's value stands behind every row.
+        assert power / share == pytest.approx(values[0][0] / values[0][1], rel=1e-3)
+
+
+def test_own_hull_from_a_table(tmp_path: Path) -> None:
+    out = example("own_hull_from_a_table", tmp_path)
+    volume = float(re.findall(r"^volume ([0-9.]+) m3", out, re.MULTILINE)[0])
+    # 4/9 L B d, exact for Wigley's hull; the table has 41 stations and the fit its millimetres.
+    assert volume == pytest.approx(4.0 / 9.0 * 100.0 * 10.0 * 6.25, rel=1e-3)
+    assert len(re.findall(r"^level [12], Fn", out, re.MULTILINE)) == 6
+
+
+def test_small_optimisation(tmp_path: Path) -> None:
+    example("small_optimisation", tmp_path, "--generations", "2", "--population", "6", "--to", "front.svg")
+    drawing = (tmp_path / "front.svg").read_text(encoding="utf-8")
+    assert drawing.startswith("<svg") and drawing.count("<circle") >= 1 and "nan" not in drawing
+
+
+def readme_commands() -> list[str]:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    lines = [line.split("#")[0].strip() for line in text.splitlines()]
+    return [line for line in lines if line.startswith("hpsop ")]
+
+
+def test_commands_of_the_readme(tmp_path: Path) -> None:
+    from hpsop_core.cli.main import build_parser
+
+    commands = readme_commands()
+    assert len(commands) >= 8
+    for command in commands:
+        words = command.split()[1:]
+        assert callable(build_parser().parse_args(words).handler)
+        if not command.startswith(LONG):
+            assert run(["-m", "hpsop_core.cli", *words, *QUICKER.get(words[0], [])], tmp_path)
+    assert (tmp_path / "report.html").stat().st_size > 10_000
+
+
+def test_python_of_the_readme(tmp_path: Path) -> None:
+    text = (ROOT / "README.md").read_text(encoding="utf-8")
+    blocks = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    assert blocks
+    for block in blocks:
+        (tmp_path / "block.py").write_text(block, encoding="utf-8")
+        assert run(["block.py"], tmp_path)
