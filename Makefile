@@ -2,12 +2,14 @@
 PYTHON ?= python3
 VENV := .venv
 BIN := $(VENV)/bin
+OLDEST := .venv-oldest
+OLDEST_PYTHON ?= python3.11
 INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
 # One thread of linear algebra a process: the same bits everywhere, and two cores for two workers.
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 
-.PHONY: explore test test-core lint soak benchmark pictures chromium clean
+.PHONY: explore test test-core test-oldest lint soak benchmark pictures chromium clean
 
 explore: $(VENV)/installed
 	$(BIN)/hpsop-explore $(ARGS)
@@ -22,6 +24,11 @@ lint: $(VENV)/installed-for-tests
 	$(BIN)/ruff check .
 	$(BIN)/ruff format --check --quiet .
 	$(BIN)/mypy
+
+# The wheel, as a stranger gets it, with the oldest versions that pyproject.toml allows. Not from the checkout: no -m,
+# no pythonpath. Compiled kernels have a folder of their own, so that two numbas do not overwrite each other's.
+test-oldest: $(OLDEST)/installed
+	NUMBA_CACHE_DIR=$(CURDIR)/$(OLDEST)/numba $(OLDEST)/bin/pytest -m oldest -o pythonpath= -p no:cacheprovider -W ignore
 
 soak: $(VENV)/installed-for-tests
 	$(BIN)/python -m pytest -m soak
@@ -51,5 +58,17 @@ $(VENV)/installed-for-tests: $(VENV)/bin/python pyproject.toml constraints.txt
 	$(INSTALL) --editable '.[test]'
 	@touch $@ $(VENV)/installed
 
+$(OLDEST)/bin/python:
+	@$(OLDEST_PYTHON) -m venv $(OLDEST) || { rm -rf $(OLDEST); \
+		echo "the oldest versions are for Python 3.11; set OLDEST_PYTHON=..." >&2; exit 1; }
+
+# Installed anew where anything that goes into the wheel has changed.
+$(OLDEST)/installed: $(OLDEST)/bin/python pyproject.toml constraints-oldest.txt \
+		$(shell find hpsop_core explorer assets -type f -not -name '*.pyc')
+	$(OLDEST)/bin/python -m pip install --quiet --disable-pip-version-check --constraint constraints-oldest.txt '.[dask]' pytest
+	$(OLDEST)/bin/python -m pip install --quiet --disable-pip-version-check --force-reinstall --no-deps .
+	@rm -rf build
+	@touch $@
+
 clean:
-	rm -rf $(VENV) build *.egg-info .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) $(OLDEST) build *.egg-info .mypy_cache .ruff_cache .pytest_cache

@@ -1,6 +1,6 @@
 """Everything about one design of a shipped case, at both levels of fidelity, beside the initial design.
 
-    python examples/evaluate_a_design.py
+python examples/evaluate_a_design.py
 """
 
 from __future__ import annotations
@@ -20,8 +20,9 @@ def main() -> None:
                 continue
             service = result.conditions[0]
             print(
-                f"level {level}, {name:>7}: at {service.speed / 0.514444:.1f} kn Rt {service.total_resistance / 1e3:.0f} "
-                f"kN, n {service.rotation_rate_rpm:.1f} 1/min, eta0 {service.open_water_efficiency:.3f}, "
+                f"level {level}, {name:>7}: at {service.speed / 0.514444:.1f} kn "
+                f"Rt {service.total_resistance / 1e3:.0f} kN, n {service.rotation_rate_rpm:.1f} 1/min, "
+                f"eta0 {service.open_water_efficiency:.3f}, "
                 f"PD {service.delivered_power / 1e6:.2f} MW; {'feasible' if result.feasible else 'not feasible'}"
             )
 

@@ -40,8 +40,9 @@ def main() -> None:
     print(hull.parent.fit_report)
     own = hydrostatics(hull)
     print(
-        f"volume {own.displaced_volume:.1f} m3, wetted surface {own.wetted_surface:.1f} m2, CB {own.block_coefficient:.4f}, "
-        f"LCB {own.longitudinal_centre_of_buoyancy:.2f} m from AP, BM {own.transverse_metacentric_radius:.2f} m"
+        f"volume {own.displaced_volume:.1f} m3, wetted surface {own.wetted_surface:.1f} m2, "
+        f"CB {own.block_coefficient:.4f}, LCB {own.longitudinal_centre_of_buoyancy:.2f} m from AP, "
+        f"BM {own.transverse_metacentric_radius:.2f} m"
     )
     for level in (1, 2):
         answer = resistance(hull, (0.25, 0.30, 0.35), level, form_factor=0.1)

@@ -1,6 +1,6 @@
 """A small search over both levels, its front as a drawing.
 
-    python examples/small_optimisation.py [--generations 20] [--population 16] [--to front.svg] [--run my.hpsop]
+python examples/small_optimisation.py [--generations 20] [--population 16] [--to front.svg] [--run my.hpsop]
 """
 
 from __future__ import annotations

@@ -1,6 +1,6 @@
 """How resistance and power follow L/B at one displacement, at both levels: does the cheap one rank as the dear one?
 
-    python examples/sweep_length_to_breadth.py [--points 7]
+python examples/sweep_length_to_breadth.py [--points 7]
 """
 
 from __future__ import annotations

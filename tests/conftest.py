@@ -1,0 +1,46 @@
+"""Marks the tests that are run with the oldest allowed versions too (`make test-oldest`), a file for each library."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import pytest
+
+OLDEST = {
+    "analytical/test_blade_panels_kernels.py": "numba",
+    "analytical/test_hull_shapes.py": "numpy, scipy",
+    "analytical/test_hull_wigley.py": "numpy, scipy",
+    "analytical/test_optimiser_sampling.py": "scipy's Latin hypercube",
+    "analytical/test_own_files.py": "scipy's fits",
+    "analytical/test_rankine_waves.py": "numba, scipy",
+    "experiment/test_blade_panels_p4119.py": "numba, scipy",
+    "experiment/test_lifting_line_p4119.py": "scipy",
+    "experiment/test_rankine_tank.py": "numba, scipy",
+    "faults/test_runs_dask.py": "dask",
+    "invariance/test_hull_meshes.py": "trimesh",
+    "invariance/test_propeller_meshes.py": "trimesh",
+    "invariance/test_same_bits.py": "threadpoolctl",
+    "other_code/test_export_design.py": "ezdxf, rhino3dm, trimesh",
+    "other_code/test_hull_nurbs_geomdl.py": "geomdl",
+    "other_code/test_optimiser_nsga2.py": "pymoo",
+    "other_code/test_report_page.py": "markupsafe, the charts",
+    "regression/test_contract.py": "every solver",
+    "regression/test_demonstration.py": "an old run file",
+    "regression/test_interface.py": "every solver",
+    "regression/test_packaging.py": "the wheel",
+}
+
+
+def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:
+    # The others need what is not there: a browser's driver, and tools/, which is not in the wheel.
+    if config.option.markexpr != "oldest":
+        return None
+    name = collection_path.relative_to(Path(__file__).parent).as_posix() if collection_path.suffix == ".py" else ""
+    return name not in (*OLDEST, "conftest.py") if name else collection_path.name == "browser" or None
+
+
+def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+    here = Path(__file__).parent
+    for item in items:
+        if item.path.relative_to(here).as_posix() in OLDEST:
+            item.add_marker(pytest.mark.oldest)
