@@ -30,6 +30,7 @@ from explorer.views.settings_view import SettingsView
 from explorer.views.toolbar_view import ToolbarView
 from explorer.views.whatif_view import WhatIfView
 from hpsop_core.errors import HpsopError
+from hpsop_core.markup import fill
 
 _BRAND = (25, 113, 194)
 
@@ -105,7 +106,7 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
         session.resize(event.numbers.get("width"), event.numbers.get("height"))
         top.set_width(session.dock_width)
         session.greet(event.browser)
-        you.show(f'<style>[data-person="{session.number}"]::after{{content:" (you)"}}</style>')
+        you.show(fill('<style>[data-person="{}"]::after{{content:" (you)"}}</style>', session.number))
         saved = session.app.memory.get(session.browser)
         if saved is not None:
             session.restore(saved, designs.again)

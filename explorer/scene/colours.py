@@ -7,6 +7,7 @@ import trimesh
 from numpy.typing import NDArray
 from PIL import Image
 
+from hpsop_core.markup import Markup, fill, joined
 from hpsop_core.quantities import number_text
 
 Stops = tuple[tuple[int, int, int], ...]
@@ -93,21 +94,24 @@ def around_zero(values: NDArray[np.float64], weights: NDArray[np.float64]) -> Li
     return min(low, -0.01), 0.0, max(high, 0.01)
 
 
-def _legend(title: str, limits: Limits, decimals: int, stops: Stops, note: str) -> str:
+def _legend(title: Markup, limits: Limits, decimals: int, stops: Stops, note: str) -> Markup:
     colours = ", ".join(f"rgb({r},{g},{b})" for r, g, b in stops)
-    ticks = "".join(f"<span>{number_text(value, decimals)}</span>" for value in limits)
-    return (
-        f'<div class="scale"><div class="scale-title">{title}</div>'
-        f'<div class="ramp" style="background:linear-gradient(90deg, {colours})"></div>'
-        f'<div class="scale-ticks">{ticks}</div><div class="soft">{note}</div></div>'
+    return fill(
+        '<div class="scale"><div class="scale-title">{}</div>'
+        '<div class="ramp" style="background:linear-gradient(90deg, {})"></div>'
+        '<div class="scale-ticks">{}</div><div class="soft">{}</div></div>',
+        title,
+        colours,
+        joined(fill("<span>{}</span>", number_text(value, decimals)) for value in limits),
+        note,
     )
 
 
-def sea_legend(reach: float, note: str) -> str:
+def sea_legend(reach: float, note: str) -> Markup:
     """The legend of wave elevations from -reach to reach, m."""
-    return _legend("wave elevation ζ [m]", (-reach, 0.0, reach), 2 if reach < 1.0 else 1, SEA, note)
+    return _legend(Markup("wave elevation ζ [m]"), (-reach, 0.0, reach), 2 if reach < 1.0 else 1, SEA, note)
 
 
-def pressure_legend(title: str, limits: Limits, note: str) -> str:
+def pressure_legend(title: Markup, limits: Limits, note: str) -> Markup:
     """The legend of a pressure coefficient."""
     return _legend(title, limits, 2, PRESSURE, note)

@@ -11,7 +11,6 @@ that arrives is checked: a browser may send anything.
 
 from __future__ import annotations
 
-import html
 import json
 import math
 import threading
@@ -23,6 +22,7 @@ from typing import Any
 import viser
 
 from explorer.server.html_slot import Slot
+from hpsop_core.markup import Markup, fill
 
 PAGE_VERSION = "1"
 _MAX_MESSAGE = 6000
@@ -112,12 +112,17 @@ class Bridge:
         self._lock = threading.Lock()
         self._channel = gui.add_text("hpsop channel", "")
         uuid = self._channel._impl.uuid
-        script = html.escape(f"({_asset('page.js')})('{PAGE_VERSION}'); window.hpsop.connect('{uuid}')", quote=True)
-        hide_row = f'div:has(> div > * > * > label[for="{uuid}"]){{display:none!important}}'
+        script = f"({_asset('page.js')})('{PAGE_VERSION}'); window.hpsop.connect('{uuid}')"
+        hide_row = Markup('div:has(> div > * > * > label[for="{}"]){{display:none!important}}').format(uuid)
         Slot(
             gui,
-            f'<div class="hpsop-root"></div><style>{_asset("page.css")}\n{hide_row}</style>'
-            f'<img alt="" style="display:none" src="data:," onerror="{script}">',
+            fill(
+                '<div class="hpsop-root"></div><style>{}\n{}</style>'
+                '<img alt="" style="display:none" src="data:," onerror="{}">',
+                Markup(_asset("page.css")),
+                hide_row,
+                script,
+            ),
         )
         self._channel.on_update(self._on_update)
 
@@ -130,19 +135,24 @@ class Bridge:
                 self._receive(item)
 
 
-def overlay(name: str, content: str) -> str:
+def overlay(name: str, content: Markup) -> Markup:
     """HTML that the browser lifts out of its panel and lays over the 3D view."""
-    return (
-        f'<template data-overlay="{name}">{content}</template>'
-        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.overlay(this)">'
+    return fill(
+        '<template data-overlay="{}">{}</template>'
+        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.overlay(this)">',
+        name,
+        content,
     )
 
 
-def tooltip(chart: str, content: str, serial: int) -> str:
+def tooltip(chart: str, content: Markup, serial: int) -> Markup:
     """HTML that the browser shows beside the pointer while it rests on ``chart``."""
-    return (
-        f'<template data-chart="{chart}" data-serial="{serial}">{content}</template>'
-        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.tip(this)">'
+    return fill(
+        '<template data-chart="{}" data-serial="{}">{}</template>'
+        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.tip(this)">',
+        chart,
+        serial,
+        content,
     )
 
 

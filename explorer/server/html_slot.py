@@ -4,6 +4,10 @@ from __future__ import annotations
 
 import viser
 
+from hpsop_core.markup import Markup
+
+_NOTHING = Markup("")
+
 
 class Slot:
     """An HTML element of a panel. Nothing else on the page makes one or sets its content.
@@ -12,15 +16,16 @@ class Slot:
 
     Args:
         gui: where the element goes.
-        content: markup to begin with.
+        content: to begin with. It is markup by type: text from a file or a person is escaped by then.
     """
 
-    def __init__(self, gui: viser.GuiApi, content: str = "") -> None:
-        self._handle = gui.add_html(content)
+    def __init__(self, gui: viser.GuiApi, content: Markup = _NOTHING) -> None:
+        # viser's encoder knows plain text only
+        self._handle = gui.add_html(str(content))
         self._content = content
 
-    def show(self, content: str) -> None:
+    def show(self, content: Markup) -> None:
         """Show this markup from now on."""
         if content != self._content:
             self._content = content
-            self._handle.content = content
+            self._handle.content = str(content)

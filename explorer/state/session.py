@@ -14,6 +14,7 @@ from explorer.state.run_picture import RunPicture
 from explorer.state.shown import Shown
 from explorer.state.view_options import ViewOptions
 from hpsop_core.errors import HpsopError
+from hpsop_core.markup import Markup
 
 MOST_PINS = 4
 # viser's client holds a batch of messages with 3D nodes in it until the graphics' next frame; curves and tables that
@@ -44,7 +45,7 @@ class Session:
         options: of the 3D view.
         archive, infeasible: what the Pareto chart shows besides the front.
         size: of the browser's window in px.
-        legends: HTML legends of what is overlaid in 3D, by overlay.
+        legends: of what is overlaid in 3D, by overlay.
         worker, heavy, slow: threads of the panels, of the ship in 3D, and of what takes seconds.
         hub: topics of this browser's views.
         gestures: of this browser.
@@ -67,7 +68,7 @@ class Session:
         self.archive = True
         self.infeasible = False
         self.size = (1366, 768)
-        self.legends: dict[str, str] = {}
+        self.legends: dict[str, Markup] = {}
         self.worker = LatestWorker(f"page-{client_id}", self._stumbled)
         self.heavy = LatestWorker(f"scene-{client_id}", self._stumbled, _SCENE_SETTLES)
         # maps and curves by level 2 take seconds: the next design's geometry must not wait for them
@@ -187,7 +188,7 @@ class Session:
         self.options = dataclasses.replace(self.options, **changes)
         self._changed("options")
 
-    def set_legend(self, overlay: str, legend: str | None) -> None:
+    def set_legend(self, overlay: str, legend: Markup | None) -> None:
         """The legend of what is overlaid in 3D, or none."""
         if legend is None:
             self.legends.pop(overlay, None)

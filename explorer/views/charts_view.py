@@ -12,7 +12,8 @@ from explorer.server.bridge import PageEvent
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Session
-from explorer.views.chips import box, chip, chips
+from explorer.views.chips import box, chip, chips, soft
+from hpsop_core.markup import Markup, fill, joined
 
 
 @dataclass(frozen=True)
@@ -52,19 +53,19 @@ class ChartsView:
     def draw(self) -> None:
         """Draw the bar and the chosen chart."""
         chosen = self._chosen()
-        rows = "".join(
-            f'<span class="soft">{word}</span>'
+        rows = joined(
+            soft(word, "span")
             + chips(
                 *(chip("tab", tab.title, tab.name, on=tab is chosen) for tab in self._tabs.values() if tab.of == of)
             )
             for of, word in (("design", "Design"), ("run", "Run"))
         )
-        self._bar.show(box(f'<div class="tools">{rows}</div>'))
+        self._bar.show(box(fill('<div class="tools">{}</div>', rows)))
         self._draw_chart(chosen)
 
     def _draw_chart(self, chosen: ChartTab) -> None:
-        content = chosen.render(self._session, self._designs)
-        self._html.show(box(f'<div data-chart-tab="{chosen.name}">{content}</div>'))
+        content = Markup(chosen.render(self._session, self._designs))
+        self._html.show(box(fill('<div data-chart-tab="{}">{}</div>', chosen.name, content)))
 
     def _topic(self, topic: str) -> None:
         chosen = self._chosen()

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
-from hpsop_core.markup import escape
+from hpsop_core.markup import Markup, fill, joined
+
+GAP = Markup('<span class="gap"></span>')
+NOTHING = Markup("")
 
 
 def chip(
     action: str, word: str, arg: str = "", on: bool = False, disabled: bool = False, css: str = "", hint: str = ""
-) -> str:
+) -> Markup:
     """One button.
 
     Args:
@@ -19,18 +22,30 @@ def chip(
         css: an extra class.
         hint: on hover.
     """
-    return (
-        f'<button type="button" class="chip {css}{" on" if on else ""}" data-act="{escape(action)}" '
-        f'data-arg="{escape(arg)}" aria-pressed="{"true" if on else "false"}" '
-        f'aria-disabled="{"true" if disabled else "false"}" title="{escape(hint)}">{escape(word)}</button>'
+    return fill(
+        '<button type="button" class="chip {css}{pressed}" data-act="{action}" data-arg="{arg}" '
+        'aria-pressed="{on}" aria-disabled="{disabled}" title="{hint}">{word}</button>',
+        css=css,
+        pressed=" on" if on else "",
+        action=action,
+        arg=arg,
+        on="true" if on else "false",
+        disabled="true" if disabled else "false",
+        hint=hint,
+        word=word,
     )
 
 
-def chips(*parts: str) -> str:
+def chips(*parts: Markup) -> Markup:
     """A row of buttons."""
-    return f'<div class="chips">{"".join(parts)}</div>'
+    return fill('<div class="chips">{}</div>', joined(parts))
 
 
-def box(content: str) -> str:
+def box(*parts: Markup) -> Markup:
     """The padded frame of every piece of HTML in a panel."""
-    return f'<div class="hp">{content}</div>'
+    return fill('<div class="hp">{}</div>', joined(parts))
+
+
+def soft(words: object, tag: str = "p") -> Markup:
+    """Words that step back."""
+    return fill('<{tag} class="soft">{words}</{tag}>', tag=tag, words=words)

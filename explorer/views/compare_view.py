@@ -8,9 +8,9 @@ from explorer.server.bridge import PageEvent
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Session
-from explorer.views.chips import box, chip, chips
+from explorer.views.chips import GAP, box, chip, chips, soft
 from explorer.views.tables import many_table
-from hpsop_core.markup import escape
+from hpsop_core.markup import Markup, fill
 
 
 class CompareView:
@@ -32,9 +32,12 @@ class CompareView:
         if not session.pins:
             self._html.show(
                 box(
-                    '<p class="soft">No design is pinned. Select one and press <b>pin</b> in the Design tab: up to '
-                    "four stand here side by side with their difference to the initial design, their curves and body "
-                    "plans overlay in Charts, and each of them can be the ghost beside the selected hull in 3D.</p>"
+                    Markup(
+                        '<p class="soft">No design is pinned. Select one and press <b>pin</b> in the Design tab: up to '
+                        "four stand here side by side with their difference to the initial design, their curves and "
+                        "body plans overlay in Charts, and each of them can be the ghost beside the selected hull in "
+                        "3D.</p>"
+                    )
                 )
             )
             return
@@ -44,8 +47,11 @@ class CompareView:
             selected = session.selected is not None and session.selected.key == item.key
             rows.append(
                 chips(
-                    f'<span class="pinned" style="--pin:var(--hp-pin{index + 1})">▲ <b>{escape(item.label)}</b></span>'
-                    f'<span class="soft">level {item.evaluation.level}</span><span class="gap"></span>',
+                    fill(
+                        '<span class="pinned" style="--pin:var(--hp-pin{})">▲ <b>{}</b></span>', index + 1, item.label
+                    ),
+                    soft(f"level {item.evaluation.level}", "span"),
+                    GAP,
                     chip("show_pin", "show", str(index), on=selected, hint="select this design"),
                     chip("ghost_pin", "ghost", str(index), on=ghosted, hint="this hull as the ghost in 3D"),
                     chip("unpin", "unpin", str(index)),
@@ -54,12 +60,14 @@ class CompareView:
         levels = {item.evaluation.level for item in session.pins}
         if len(levels) > 1:
             rows.append(
-                '<p class="soft">Levels differ: each is compared with the initial design at its own level; the '
-                f"column “initial” is level {session.pins[-1].evaluation.level}.</p>"
+                soft(
+                    "Levels differ: each is compared with the initial design at its own level; the column “initial” "
+                    f"is level {session.pins[-1].evaluation.level}."
+                )
             )
         initials = {level: self._designs.initial(level) for level in levels}
         table = many_table(initials, session.pins, session.picture.case.conditions.froude_numbers)
-        self._html.show(box("".join(rows) + table))
+        self._html.show(box(*rows, table))
 
     def _index(self, event: PageEvent) -> int | None:
         index = int(event.arg) if event.arg.isdecimal() and len(event.arg) < 3 else -1

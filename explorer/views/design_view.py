@@ -8,9 +8,10 @@ from explorer.server.bridge import PageEvent
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Session
-from explorer.views.chips import box, chip, chips
+from explorer.views.chips import GAP, box, chip, chips, soft
 from explorer.views.on_display import select_design
 from explorer.views.tables import comparison_table, headline, warnings_html
+from hpsop_core.markup import fill
 
 
 class DesignView:
@@ -35,7 +36,7 @@ class DesignView:
             return
         self._last = state
         if shown is None:
-            self._html.show(box('<p class="soft">Computing the initial design …</p>'))
+            self._html.show(box(soft("Computing the initial design …")))
             return
         pinned = any(item.key == shown.key for item in session.pins)
         row = chips(
@@ -56,15 +57,21 @@ class DesignView:
                 on=shown.design_id is not None and shown.design_id == picture.knee,
                 hint="where the front bends most",
             ),
-            '<span class="gap"></span>',
+            GAP,
             chip("pin", "pinned" if pinned else "pin", on=pinned, hint="keep this design side by side (at most four)"),
         )
         initial = self._designs.initial(shown.evaluation.level)
         table = comparison_table(initial, shown, session.picture.case.conditions.froude_numbers)
         self._html.show(
             box(
-                f'<div data-selected="{shown.design_id if shown.design_id is not None else shown.kind}">'
-                f"{headline(shown)}</div>{row}{warnings_html(shown)}{table}"
+                fill(
+                    '<div data-selected="{}">{}</div>',
+                    shown.design_id if shown.design_id is not None else shown.kind,
+                    headline(shown),
+                ),
+                row,
+                warnings_html(shown),
+                table,
             )
         )
 

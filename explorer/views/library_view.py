@@ -9,8 +9,8 @@ import viser
 from explorer.server.html_slot import Slot
 from explorer.services.runs import Runs
 from explorer.state.app_state import AppState
-from explorer.views.chips import box, chip, chips
-from hpsop_core.markup import escape
+from explorer.views.chips import GAP, NOTHING, box, chip, chips, soft
+from hpsop_core.markup import Markup, fill, joined
 
 
 class LibraryView:
@@ -31,7 +31,8 @@ class LibraryView:
             age = time.strftime("%Y-%m-%d %H:%M", time.localtime(entry.modified))
             if self._app.asked_to_delete == entry.name:
                 buttons = chips(
-                    '<span class="bad">Delete this run for good?</span><span class="gap"></span>',
+                    Markup('<span class="bad">Delete this run for good?</span>'),
+                    GAP,
                     chip("delete_yes", "delete", entry.name, css="danger"),
                     chip("delete_no", "keep"),
                 )
@@ -40,14 +41,20 @@ class LibraryView:
                     chip("open_run", "shown" if current else "open", entry.name, on=current),
                     chip("continue_run", "continue", entry.name, hint="open it and go on with it")
                     if entry.continuable and not current
-                    else "",
-                    chip("adopt", "use its settings", hint="set up the next run like this one") if current else "",
+                    else NOTHING,
+                    chip("adopt", "use its settings", hint="set up the next run like this one") if current else NOTHING,
                     chip("delete_run", "delete …", entry.name, disabled=not entry.deletable),
                 )
             rows.append(
-                f'<div class="row"><b>{escape(entry.title)}</b><br><span class="soft">{escape(entry.summary)}<br>'
-                f"{age} · {escape(entry.name)}</span>{buttons}</div>"
+                fill(
+                    '<div class="row"><b>{}</b><br><span class="soft">{}<br>{} · {}</span>{}</div>',
+                    entry.title,
+                    entry.summary,
+                    age,
+                    entry.name,
+                    buttons,
+                )
             )
-        empty = '<p class="soft">No runs yet. Each run is saved by itself and stands here.</p>'
-        where = f'<p class="soft">Folder: {escape(self._runs.folder_text())}</p>'
-        self._html.show(box((f'<div class="rows">{"".join(rows)}</div>' if rows else empty) + where))
+        empty = soft("No runs yet. Each run is saved by itself and stands here.")
+        where = soft(f"Folder: {self._runs.folder_text()}")
+        self._html.show(box(fill('<div class="rows">{}</div>', joined(rows)) if rows else empty, where))

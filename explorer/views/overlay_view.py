@@ -15,7 +15,9 @@ from explorer.scene.waves import wave_surface
 from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.state.shown import Shown
+from explorer.views.chips import soft
 from hpsop_core.errors import HpsopError
+from hpsop_core.markup import Markup
 
 # the hull's underwater part stays visible, faintly
 _WATER_OPACITY = 0.9
@@ -58,7 +60,7 @@ class OverlayView:
             return
         if self._drawn.get(name) == key:
             return
-        session.set_legend(name, f'<div class="soft">computing the {name} …</div>')
+        session.set_legend(name, soft(f"computing the {name} …", "div"))
         try:
             make()
             self._drawn[name] = key
@@ -84,13 +86,13 @@ class OverlayView:
 
     def _pressure(self, shown: Shown, index: int) -> None:
         found = self._designs.hull_pressure(shown.evaluation, index)
-        self._map("pressure", "/ship/pressure", found, "hull pressure C<sub>p</sub> [–]")
+        self._map("pressure", "/ship/pressure", found, Markup("hull pressure C<sub>p</sub> [–]"))
 
     def _blades(self, shown: Shown, index: int) -> None:
         found = self._designs.blade_pressure(shown.evaluation, index)
-        self._map("blades", "/ship/propeller/pressure", found, "blade pressure C<sub>p</sub> [–]")
+        self._map("blades", "/ship/propeller/pressure", found, Markup("blade pressure C<sub>p</sub> [–]"))
 
-    def _map(self, name: str, node: str, found: PressureMap, title: str) -> None:
+    def _map(self, name: str, node: str, found: PressureMap, title: Markup) -> None:
         limits = around_zero(found.coefficient, found.areas())
         self._show(name, node, painted(found.vertices, found.faces, found.coefficient, limits, PRESSURE))
         self._session.set_legend(name, pressure_legend(title, limits, found.note))

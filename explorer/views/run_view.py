@@ -9,8 +9,8 @@ from explorer.server.widgets import set_value
 from explorer.services.runs import Runs
 from explorer.state.app_state import AppState
 from explorer.state.run_picture import ACTIVE, FAILED, FINISHED, IDLE, PAUSED, RUNNING, STARTING, STOPPED, STOPPING
-from explorer.views.chips import box, chip, chips
-from hpsop_core.markup import escape
+from explorer.views.chips import NOTHING, box, chip, chips, soft
+from hpsop_core.markup import Markup, fill, joined
 from hpsop_core.quantities import number_text
 
 _WORDS = {
@@ -48,10 +48,10 @@ class RunView:
         driven = picture.live
         active = status in ACTIVE and driven
         numbers = sorted(session.number for session in list(self._app.sessions.values()) if session.number)
-        people = ""
+        people = NOTHING
         if len(numbers) > 1:
-            names = ", ".join(f'<span data-person="{number}">browser {number}</span>' for number in numbers)
-            people = f'<p class="soft">{len(numbers)} watching: {names}</p>'
+            names = joined((fill('<span data-person="{0}">browser {0}</span>', number) for number in numbers), ", ")
+            people = soft(fill("{} watching: {}", len(numbers), names))
         word = _WORDS.get(status, status)
         if status in ACTIVE and not driven:
             word = "Running elsewhere" if status != PAUSED else "Paused elsewhere"
@@ -65,38 +65,42 @@ class RunView:
             ]
         elif picture.name and runs.can_continue():
             buttons.append(chip("run_continue", "▶▶ Continue", css="big", hint="go on with this run"))
-        more = ""
+        more = NOTHING
         if picture.name and runs.can_extend():
             more = chips(
-                '<span class="soft">extend by</span>',
+                soft("extend by", "span"),
                 *(
                     chip("run_extend", f"+{count}", str(count), hint=f"{count} more generations")
                     for count in _EXTENSIONS
                 ),
             )
-        message = (
-            f'<p class="{"bad" if status == FAILED else "soft"}">{escape(picture.message)}</p>'
-            if (picture.message)
-            else ""
-        )
-        name = f'<span class="soft" title="{escape(picture.name)}">{escape(_short(picture.name))}</span>'
+        message = NOTHING
+        if picture.message:
+            message = fill('<p class="{}">{}</p>', "bad" if status == FAILED else "soft", picture.message)
+        name = fill('<span class="soft" title="{}">{}</span>', picture.name, _short(picture.name))
         self._status.show(
             box(
-                f'<div class="status" data-run-status="{status}" data-generation="{len(picture.generations)}">'
-                f'<b class="state-{status}">{word}</b> {name}<span class="gap"></span></div>'
+                fill(
+                    '<div class="status" data-run-status="{status}" data-generation="{count}">'
+                    '<b class="state-{status}">{word}</b> {name}<span class="gap"></span></div>',
+                    status=status,
+                    count=len(picture.generations),
+                    word=word,
+                    name=name,
+                )
             )
         )
-        self._buttons.show(box(chips(*buttons) + more))
-        doings = f'<p class="soft">{escape(self._app.doings)}</p>' if self._app.doings and people else ""
-        self._facts_slot.show(box(f"{message}{self._facts()}{people}{doings}"))
+        self._buttons.show(box(chips(*buttons), more))
+        doings = soft(self._app.doings) if self._app.doings and people else NOTHING
+        self._facts_slot.show(box(message, self._facts(), people, doings))
         total = max(picture.total_generations, 1)
         set_value(self._bar, min(100.0, 100.0 * (len(picture.generations) + runs.part_of_generation()) / total))
         self._bar.visible = bool(picture.generations) or active
 
-    def _facts(self) -> str:
+    def _facts(self) -> Markup:
         picture = self._app.picture
         if not picture.generations and picture.status == IDLE:
-            return '<p class="soft">Set bounds below and press Start.</p>'
+            return soft("Set bounds below and press Start.")
         newest = picture.generations[-1] if picture.generations else None
         level = newest.level if newest else 1
         facts = [
@@ -108,11 +112,8 @@ class RunView:
             facts.append(("time left", _duration(picture.seconds_left)))
         elif picture.elapsed > 0.0:
             facts.append(("time used", _duration(picture.elapsed)))
-        return (
-            '<div class="facts">'
-            + "".join(f'<span class="soft">{a}</span><span>{b}</span>' for a, b in facts)
-            + "</div>"
-        )
+        rows = (fill('<span class="soft">{}</span><span>{}</span>', name, value) for name, value in facts)
+        return fill('<div class="facts">{}</div>', joined(rows))
 
 
 def _short(name: str) -> str:

@@ -15,7 +15,7 @@ from explorer.server.widgets import set_value
 from explorer.services.runs import Runs
 from explorer.state.app_state import AppState
 from explorer.state.draft import Draft, numbers_from_text
-from explorer.views.chips import box, chip, chips
+from explorer.views.chips import NOTHING, box, chip, chips, soft
 from explorer.views.settings_fields import (
     CASE_FIELDS,
     OPEN_FOLDERS,
@@ -28,7 +28,7 @@ from hpsop_core.case.case import SHIPPED_CASES, load_case
 from hpsop_core.case.fields import checked_value, rules
 from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.errors import InputError
-from hpsop_core.markup import escape, joined
+from hpsop_core.markup import fill, joined
 from hpsop_core.quantities import number_text, variable_quantities
 
 # A field is typed digit by digit; what cannot be taken is refused when the typing has rested so long.
@@ -295,20 +295,20 @@ class SettingsView:
         lines = joined(draft.base.description.strip().split("\n"), "<br>")
         try:
             draft.case()
-            trouble = ""
+            trouble = NOTHING
         except InputError as error:
-            trouble = f'<p class="bad">{escape(str(error))}</p>'
+            trouble = fill('<p class="bad">{}</p>', error)
         count = draft.count()
-        changed = ""
+        changed = NOTHING
         if count:
-            words = "".join(
+            words = (
                 chip("reset_field", f"{self._title(section, name)} ✕", f"{section}.{name}", hint="back to the preset's")
                 for section, fields in draft.changes.items()
                 for name in fields
             )
-            changed = f'<p class="soft">Changed (●):</p>{chips(words)}'
-        self._about.show(box(f"<p><b>{escape(draft.base.title)}</b></p><p class='soft'>{lines}</p>{changed}{trouble}"))
-        self._trouble.show(box(trouble) if trouble else "")
+            changed = joined([soft("Changed (●):"), chips(*words)])
+        self._about.show(box(fill("<p><b>{}</b></p>", draft.base.title), soft(lines), changed, trouble))
+        self._trouble.show(box(trouble) if trouble else NOTHING)
         self._reset.visible = count > 0
         for (section, name), widget in self._widgets.items():
             label = self._labels[(section, name)] + (" ●" if draft.changed(section, name) else "")
@@ -322,8 +322,12 @@ class SettingsView:
             mark = " ●" if draft.changed("bounds", quantity.key) else ""
             text = f"fixed at {a}{unit}" if low == high else f"{a} … {b}{unit}"
             self._readouts[quantity.key].show(
-                f'<div class="hp readout" data-variable="{quantity.key}"><span>{text}</span>'
-                f'<span class="level">{mark}</span></div>'
+                fill(
+                    '<div class="hp readout" data-variable="{}"><span>{}</span><span class="level">{}</span></div>',
+                    quantity.key,
+                    text,
+                    mark,
+                )
             )
 
 

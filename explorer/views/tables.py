@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from explorer.state.shown import Shown
-from hpsop_core.markup import escape, symbol_html
+from hpsop_core.markup import Markup, fill, joined, symbol_html
 from hpsop_core.quantities import (
     CONSTRAINTS,
     HULL,
@@ -22,31 +22,31 @@ _ROOM_FOR_NAMES = 4
 _PLAIN_CHANGE = {"Constraints (feasible ≤ 0)"}
 
 
-def headline(shown: Shown) -> str:
+def headline(shown: Shown) -> Markup:
     """Design 12 · level 1 · generation 3 · feasible."""
     evaluation = shown.evaluation
-    parts = [f"<b>{escape(shown.label)}</b>", f"level {evaluation.level}"]
+    parts: list[str] = [fill("<b>{}</b>", shown.label), f"level {evaluation.level}"]
     if shown.generation is not None and shown.generation > 0:
         parts.append(f"generation {shown.generation}")
     if not evaluation.ok:
-        parts.append(f'<span class="bad">failed: {escape(evaluation.reason)}</span>')
+        parts.append(fill('<span class="bad">failed: {}</span>', evaluation.reason))
     elif evaluation.feasible:
-        parts.append('<span class="good">feasible</span>')
+        parts.append(Markup('<span class="good">feasible</span>'))
     else:
-        parts.append('<span class="bad">infeasible</span>')
-    return " · ".join(parts)
+        parts.append(Markup('<span class="bad">infeasible</span>'))
+    return joined(parts, " · ")
 
 
-def warnings_html(shown: Shown) -> str:
+def warnings_html(shown: Shown) -> Markup:
     """Violated constraints and warnings in words."""
-    lines = [f'<p class="bad">{escape(text)}</p>' for text in violated(shown.evaluation)]
-    lines += [f'<p class="soft">{escape(text)}</p>' for text in shown.evaluation.warnings]
-    return "".join(lines)
+    lines = [fill('<p class="bad">{}</p>', text) for text in violated(shown.evaluation)]
+    lines += [fill('<p class="soft">{}</p>', text) for text in shown.evaluation.warnings]
+    return joined(lines)
 
 
-def comparison_table(initial: Shown | None, selected: Shown | None, froude_numbers: Sequence[float]) -> str:
+def comparison_table(initial: Shown | None, selected: Shown | None, froude_numbers: Sequence[float]) -> Markup:
     """Initial, selected and change, grouped; the conditions stand side by side in their own groups."""
-    rows = ["<tr><th></th><th>initial</th><th>selected</th><th>change</th></tr>"]
+    rows = [Markup("<tr><th></th><th>initial</th><th>selected</th><th>change</th></tr>")]
     group = ""
     for quantity in all_quantities(froude_numbers):
         first = quantity.value(initial.evaluation) if initial else None
@@ -55,20 +55,26 @@ def comparison_table(initial: Shown | None, selected: Shown | None, froude_numbe
             continue
         if quantity.group != group:
             group = quantity.group
-            rows.append(f'<tr class="group"><td colspan="4">{escape(group)}</td></tr>')
+            rows.append(fill('<tr class="group"><td colspan="4">{}</td></tr>', group))
         plain = group in _PLAIN_CHANGE or quantity.key == "blades"
         change = change_text(first, second, quantity.decimals, relative=not plain)
-        css = _tone(quantity, first, second)
         rows.append(
-            f'<tr data-quantity="{quantity.key}"><td class="name">{_name(quantity)}</td>'
-            f"<td>{quantity.text(initial.evaluation) if initial else '–'}</td>"
-            f"<td>{quantity.text(selected.evaluation) if selected else '–'}</td>"
-            f'<td class="{css}">{change}</td></tr>'
+            fill(
+                '<tr data-quantity="{}"><td class="name">{}</td><td>{}</td><td>{}</td><td class="{}">{}</td></tr>',
+                quantity.key,
+                _name(quantity),
+                quantity.text(initial.evaluation) if initial else "–",
+                quantity.text(selected.evaluation) if selected else "–",
+                _tone(quantity, first, second),
+                change,
+            )
         )
-    return f'<table class="numbers">{"".join(rows)}</table>'
+    return _table(rows)
 
 
-def many_table(initials: Mapping[int, Shown | None], designs: Sequence[Shown], froude_numbers: Sequence[float]) -> str:
+def many_table(
+    initials: Mapping[int, Shown | None], designs: Sequence[Shown], froude_numbers: Sequence[float]
+) -> Markup:
     """All numbers of several designs with the difference to the initial design at the same level below each.
 
     Args:
@@ -77,13 +83,17 @@ def many_table(initials: Mapping[int, Shown | None], designs: Sequence[Shown], f
         froude_numbers: of the case.
     """
     initial = initials.get(designs[-1].evaluation.level)
-    heads = "".join(
-        f'<th class="pinned" style="--pin:var(--hp-pin{index + 1})">{escape(item.label)}'
-        f'<br><span class="unit">level {item.evaluation.level}</span></th>'
+    heads = joined(
+        fill(
+            '<th class="pinned" style="--pin:var(--hp-pin{})">{}<br><span class="unit">level {}</span></th>',
+            index + 1,
+            item.label,
+            item.evaluation.level,
+        )
         for index, item in enumerate(designs)
     )
     name = _name if len(designs) < _ROOM_FOR_NAMES else _short_name
-    rows = [f"<tr><th></th><th>initial</th>{heads}</tr>"]
+    rows = [fill("<tr><th></th><th>initial</th>{}</tr>", heads)]
     group = ""
     for quantity in all_quantities(froude_numbers):
         first = quantity.value(initial.evaluation) if initial else None
@@ -92,7 +102,7 @@ def many_table(initials: Mapping[int, Shown | None], designs: Sequence[Shown], f
             continue
         if quantity.group != group:
             group = quantity.group
-            rows.append(f'<tr class="group"><td colspan="{2 + len(designs)}">{escape(group)}</td></tr>')
+            rows.append(fill('<tr class="group"><td colspan="{}">{}</td></tr>', 2 + len(designs), group))
         cells = []
         plain = group in _PLAIN_CHANGE or quantity.key == "blades"
         for item, value in zip(designs, values, strict=True):
@@ -100,49 +110,65 @@ def many_table(initials: Mapping[int, Shown | None], designs: Sequence[Shown], f
             base = quantity.value(own.evaluation) if own else None
             change = change_text(base, value, quantity.decimals, relative=not plain)
             cells.append(
-                f'<td>{quantity.text(item.evaluation)}<br><span class="change {_tone(quantity, base, value)}">'
-                f"{change}</span></td>"
+                fill(
+                    '<td>{}<br><span class="change {}">{}</span></td>',
+                    quantity.text(item.evaluation),
+                    _tone(quantity, base, value),
+                    change,
+                )
             )
         rows.append(
-            f'<tr data-compare="{quantity.key}"><td class="name">{name(quantity)}</td>'
-            f"<td>{quantity.text(initial.evaluation) if initial else '–'}</td>{''.join(cells)}</tr>"
+            fill(
+                '<tr data-compare="{}"><td class="name">{}</td><td>{}</td>{}</tr>',
+                quantity.key,
+                name(quantity),
+                quantity.text(initial.evaluation) if initial else "–",
+                joined(cells),
+            )
         )
-    return f'<table class="numbers">{"".join(rows)}</table>'
+    return _table(rows)
 
 
-def design_card(shown: Shown) -> str:
+def _table(rows: Sequence[Markup]) -> Markup:
+    return fill('<table class="numbers">{}</table>', joined(rows))
+
+
+def design_card(shown: Shown) -> Markup:
     """Every number of a design, for the tooltip."""
     evaluation = shown.evaluation
     froude = [condition.froude_number for condition in evaluation.conditions]
-    left = "".join(_card_row(quantity, shown) for quantity in (*OBJECTIVES, *HULL, *PROPELLER, *CONSTRAINTS))
-    columns = [f'<table class="numbers">{left}</table>']
+    columns = [_table([_card_row(quantity, shown) for quantity in (*OBJECTIVES, *HULL, *PROPELLER, *CONSTRAINTS)])]
     quantities = condition_quantities([round(value, 4) for value in froude])
     per_condition = len(quantities) // max(len(froude), 1) if froude else 0
     for index in range(len(froude)):
         part = quantities[index * per_condition : (index + 1) * per_condition]
-        body = "".join(_card_row(quantity, shown) for quantity in part)
-        columns.append(
-            f'<table class="numbers"><tr class="group"><td colspan="2">{escape(part[0].group)}</td></tr>{body}</table>'
-        )
-    return f'{headline(shown)}<div class="columns">{"".join(columns)}</div>{warnings_html(shown)}'
+        group = fill('<tr class="group"><td colspan="2">{}</td></tr>', part[0].group)
+        columns.append(_table([group, *(_card_row(quantity, shown) for quantity in part)]))
+    return joined([headline(shown), fill('<div class="columns">{}</div>', joined(columns)), warnings_html(shown)])
 
 
-def _card_row(quantity: Quantity, shown: Shown) -> str:
+def _card_row(quantity: Quantity, shown: Shown) -> Markup:
     if quantity.value(shown.evaluation) is None:
-        return ""
-    unit = f' <span class="unit">{quantity.unit}</span>' if quantity.unit else ""
-    return f"<tr><td>{symbol_html(quantity.symbol)}</td><td>{quantity.text(shown.evaluation)}{unit}</td></tr>"
+        return Markup("")
+    unit = fill(' <span class="unit">{}</span>', quantity.unit) if quantity.unit else ""
+    symbol = symbol_html(quantity.symbol)
+    return fill("<tr><td>{}</td><td>{}{}</td></tr>", symbol, quantity.text(shown.evaluation), unit)
 
 
-def _name(quantity: Quantity) -> str:
-    unit = f' <span class="unit">[{quantity.unit}]</span>' if quantity.unit else ""
-    return f"{escape(quantity.label)} <span class='unit'>{symbol_html(quantity.symbol)}</span>{unit}"
+def _name(quantity: Quantity) -> Markup:
+    return fill(
+        "{} <span class='unit'>{}</span>{}", quantity.label, symbol_html(quantity.symbol), _bracketed_unit(quantity)
+    )
 
 
-def _short_name(quantity: Quantity) -> str:
+def _short_name(quantity: Quantity) -> Markup:
     """Symbol and unit, with the name on hover: several designs leave no room for both."""
-    unit = f' <span class="unit">[{quantity.unit}]</span>' if quantity.unit else ""
-    return f'<span title="{escape(quantity.label)}">{symbol_html(quantity.symbol)}{unit}</span>'
+    symbol = symbol_html(quantity.symbol)
+    return fill('<span title="{}">{}{}</span>', quantity.label, symbol, _bracketed_unit(quantity))
+
+
+def _bracketed_unit(quantity: Quantity) -> Markup:
+    return fill(' <span class="unit">[{}]</span>', quantity.unit) if quantity.unit else Markup("")
 
 
 def _tone(quantity: Quantity, first: float | None, second: float | None) -> str:

@@ -14,12 +14,12 @@ from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.state.shown import Shown
-from explorer.views.chips import chip, chips
+from explorer.views.chips import NOTHING, chip, chips, soft
 from explorer.views.on_display import ghost_of
 from explorer.views.tables import headline
 from hpsop_core.errors import HpsopError
 from hpsop_core.export.design_files import zip_design
-from hpsop_core.markup import escape
+from hpsop_core.markup import Markup, fill, joined
 from hpsop_core.quantities import number_text
 
 _SWITCHES = (
@@ -54,17 +54,17 @@ class ToolbarView:
     def draw(self) -> None:
         """The buttons."""
         options = self._session.options
-        cameras = "".join(chip("camera", TITLES[name], name, on=options.camera == name) for name in PRESETS)
-        switches = "".join(
+        cameras = joined(chip("camera", TITLES[name], name, on=options.camera == name) for name in PRESETS)
+        switches = joined(
             chip("switch", word, name, on=bool(getattr(options, name)), hint=hint)
             for name, word, hint in _SWITCHES
             if name != "beside" or options.ghost
         )
-        row = ""
+        row = NOTHING
         shown = self._session.selected
         overlaid = options.waves or options.pressure or options.spin
         if overlaid and shown is not None and len(shown.evaluation.conditions) > 1:
-            conditions = "".join(
+            conditions = joined(
                 chip(
                     "condition",
                     f"Fn {condition.froude_number:.3f}",
@@ -74,7 +74,7 @@ class ToolbarView:
                 )
                 for index, condition in enumerate(shown.evaluation.conditions)
             )
-            row = f'<span class="soft">At</span>{chips(conditions)}'
+            row = joined([soft("At", "span"), chips(conditions)])
         other = (
             chip("switch", "Dark", "dark", on=options.dark)
             + chip("screenshot", "Screenshot")
@@ -83,9 +83,14 @@ class ToolbarView:
         self._bar.show(
             overlay(
                 "toolbar",
-                f'<div class="card"><div class="tools"><span class="soft">View</span>{chips(cameras)}'
-                f'<span class="soft">Show</span>{chips(switches)}'
-                f'{row}<span class="soft">Page</span>{chips(other)}</div></div>',
+                fill(
+                    '<div class="card"><div class="tools"><span class="soft">View</span>{}'
+                    '<span class="soft">Show</span>{}{}<span class="soft">Page</span>{}</div></div>',
+                    chips(cameras),
+                    chips(switches),
+                    row,
+                    chips(other),
+                ),
             )
         )
 
@@ -93,35 +98,46 @@ class ToolbarView:
         """The design's name and headline numbers, and legends."""
         shown = self._session.selected
         if shown is None:
-            self._card.show(overlay("card", '<div class="card">Computing the initial design …</div>'))
+            self._card.show(overlay("card", Markup('<div class="card">Computing the initial design …</div>')))
             return
         evaluation = shown.evaluation
-        facts = ""
+        facts = NOTHING
         if evaluation.hull is not None:
             hull = evaluation.hull
-            facts = (
-                f"L<sub>PP</sub> {hull.length:.1f} m · B {hull.breadth:.2f} m · d {hull.draft:.2f} m · "
-                f"C<sub>B</sub> {hull.block_coefficient:.3f} · ∇ {number_text(hull.displaced_volume, 0)} m³<br>"
-                f"D {evaluation.variables.diameter:.2f} m · Z {evaluation.variables.blade_count} · "
-                f"f₁ {number_text(evaluation.objectives.get('f1'), 4)} · "
-                f"f₂ {number_text(evaluation.objectives.get('f2'), 4)}"
+            facts = fill(
+                "L<sub>PP</sub> {:.1f} m · B {:.2f} m · d {:.2f} m · C<sub>B</sub> {:.3f} · ∇ {} m³<br>"
+                "D {:.2f} m · Z {} · f₁ {} · f₂ {}",
+                hull.length,
+                hull.breadth,
+                hull.draft,
+                hull.block_coefficient,
+                number_text(hull.displaced_volume, 0),
+                evaluation.variables.diameter,
+                evaluation.variables.blade_count,
+                number_text(evaluation.objectives.get("f1"), 4),
+                number_text(evaluation.objectives.get("f2"), 4),
             )
         ghost = self._ghost_words()
-        legends = "".join(self._session.legends.values())
+        legends = joined(list(self._session.legends.values()))
         if legends:
-            legends = f'<div class="scales">{legends}</div>'
+            legends = fill('<div class="scales">{}</div>', legends)
         self._card.show(
             overlay(
                 "card",
-                f'<div class="card" data-card="'
-                f'{shown.design_id if shown.design_id is not None else shown.kind}">'
-                f'{headline(shown)}<br><span class="soft">{facts}{ghost}</span>{legends}</div>',
+                fill(
+                    '<div class="card" data-card="{}">{}<br><span class="soft">{}{}</span>{}</div>',
+                    shown.design_id if shown.design_id is not None else shown.kind,
+                    headline(shown),
+                    facts,
+                    ghost,
+                    legends,
+                ),
             )
         )
 
-    def _ghost_words(self) -> str:
+    def _ghost_words(self) -> Markup:
         ghost, _ = ghost_of(self._session, self._designs)
-        return f"<br>ghost: {escape(_within_a_line(ghost))}" if ghost is not None else ""
+        return fill("<br>ghost: {}", _within_a_line(ghost)) if ghost is not None else NOTHING
 
     def _switch(self, event: PageEvent) -> None:
         options = self._session.options

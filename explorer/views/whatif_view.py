@@ -13,12 +13,13 @@ from explorer.server.widgets import set_value
 from explorer.services.services import Services
 from explorer.state.session import Session
 from explorer.state.shown import Shown
-from explorer.views.chips import box
+from explorer.views.chips import NOTHING, box, soft
 from explorer.views.on_display import select_design
 from explorer.views.settings_fields import slider_decimals, variable_label
 from explorer.views.tables import headline, warnings_html
 from hpsop_core.case.variables import VARIABLE_TABLE, DesignVariables
 from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.markup import fill, joined
 from hpsop_core.quantities import number_text
 
 _LEVEL2 = "Evaluate at level 2"
@@ -94,30 +95,38 @@ class WhatIfView:
         if shown.kind != "whatif":
             self._html.show(
                 box(
-                    f'<p>{headline(shown)}</p><p class="soft">Move a slider: level 1 answers at once, and the hull, '
-                    "the propeller, the curves and the table follow.</p>"
+                    fill("<p>{}</p>", headline(shown)),
+                    soft(
+                        "Move a slider: level 1 answers at once, and the hull, the propeller, the curves and the table "
+                        "follow."
+                    ),
                 )
             )
             return
         evaluation = shown.evaluation
-        facts = "".join(
-            f"<span>{name}</span><span>{text}</span>"
-            for name, text in (
-                ("f₁", number_text(evaluation.objectives.get("f1"), 4)),
-                ("f₂", number_text(evaluation.objectives.get("f2"), 4)),
-                *(
-                    (
-                        f"condition {index + 1}: Rt, PD",
-                        f"{number_text(1e-3 * item.total_resistance, 0)} kN, "
-                        f"{number_text(1e-6 * item.delivered_power, 2)} MW",
-                    )
-                    for index, item in enumerate(evaluation.conditions)
-                ),
+        numbers = (
+            ("f₁", number_text(evaluation.objectives.get("f1"), 4)),
+            ("f₂", number_text(evaluation.objectives.get("f2"), 4)),
+            *(
+                (
+                    f"condition {index + 1}: Rt, PD",
+                    f"{number_text(1e-3 * item.total_resistance, 0)} kN, "
+                    f"{number_text(1e-6 * item.delivered_power, 2)} MW",
+                )
+                for index, item in enumerate(evaluation.conditions)
+            ),
+        )
+        facts = joined(fill("<span>{}</span><span>{}</span>", name, text) for name, text in numbers)
+        recent = [moment for moment in self._answered if moment > time.monotonic() - 2.0]
+        rate = soft(f"{len(recent) / 2.0:.0f} answers a second") if len(recent) > 4 else NOTHING
+        self._html.show(
+            box(
+                fill("<p>{}</p>", headline(shown)),
+                warnings_html(shown),
+                fill("<div class='facts'>{}</div>", facts),
+                rate,
             )
         )
-        recent = [moment for moment in self._answered if moment > time.monotonic() - 2.0]
-        rate = f'<p class="soft">{len(recent) / 2.0:.0f} answers a second</p>' if len(recent) > 4 else ""
-        self._html.show(box(f"<p>{headline(shown)}</p>{warnings_html(shown)}<div class='facts'>{facts}</div>{rate}"))
 
     def _moved(self, event: viser.GuiEvent[Any]) -> None:
         if event.client_id is not None:

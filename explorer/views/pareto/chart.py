@@ -12,6 +12,7 @@ from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Limits, Session
 from explorer.views.chips import box
+from hpsop_core.markup import Markup
 from hpsop_core.quantities import objective_title
 
 _FRAME = (68.0, 42.0)  # px of the margins, both sides together
@@ -71,7 +72,7 @@ class ParetoChart:
             keys.append(("square", "hand", "by hand"))
         if session.pins:
             keys.append(("triangle", "pin1", "pinned"))
-        self._html.show(box(svg + legend(keys)))
+        self._html.show(box(Markup(svg + legend(keys))))
 
     def _height(self) -> float:
         return min(max(0.5 * self._session.size[1] - 178.0, 190.0), 400.0)

@@ -11,6 +11,7 @@ from explorer.server.bridge import PageEvent, tooltip
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Limits, Session
+from explorer.views.chips import NOTHING, soft
 from explorer.views.on_display import select_design
 from explorer.views.pareto.chart import ParetoChart
 from explorer.views.tables import design_card
@@ -81,13 +82,10 @@ class ParetoPicking:
         self._serial += 1
         shown = self._designs.shown(found[0]) if found else None
         if shown is None:
-            self._tip.show(tooltip("pareto", "", self._serial))
+            self._tip.show(tooltip("pareto", NOTHING, self._serial))
             return
-        more = (
-            f"<p class='soft'>{len(found)} designs coincide here: click again for the next.</p>"
-            if len(found) > 1
-            else ""
-        )
+        crowded = len(found) > 1
+        more = soft(f"{len(found)} designs coincide here: click again for the next.") if crowded else NOTHING
         self._tip.show(tooltip("pareto", design_card(shown) + more, self._serial))
 
     def _key(self, event: PageEvent) -> None:

@@ -12,7 +12,7 @@ from explorer.server.html_slot import Slot
 from explorer.server.widgets import set_value
 from explorer.state.run_picture import GenerationPicture
 from explorer.state.session import Session
-from explorer.views.chips import box, chip, chips
+from explorer.views.chips import GAP, NOTHING, box, chip, chips, soft
 
 _STEP_SECONDS = 0.25
 
@@ -38,7 +38,7 @@ class Scrubber:
         session, picture = self._session, self._session.picture
         count = len(picture.generations)
         generation = picture.generation_at(session.scrubbed)
-        filtered = ""
+        filtered = NOTHING
         if session.filters:
             inside = int(picture.inside(session.filters).sum())
             filtered = chip("unfilter", f"{inside} of {len(picture.ids)} pass ✕", hint="drop all filters", on=True)
@@ -54,7 +54,7 @@ class Scrubber:
                     ),
                     chip("step", "›", "1", disabled=count == 0, hint="next generation"),
                     chip("follow", "newest", on=session.scrubbed is None, hint="follow the run"),
-                    '<span class="gap"></span>',
+                    GAP,
                     chip("layer", "archive", "archive", on=session.archive, hint="every feasible design evaluated"),
                     chip(
                         "layer",
@@ -65,18 +65,11 @@ class Scrubber:
                     ),
                     chip("unzoom", "all", hint="show the whole chart (double click)")
                     if "pareto" in session.limits
-                    else "",
+                    else NOTHING,
                 )
             )
         )
-        self._words.show(
-            box(
-                chips(
-                    f'<span class="soft">{_generation_words(generation, count)}</span><span class="gap"></span>',
-                    filtered,
-                )
-            )
-        )
+        self._words.show(box(chips(soft(_generation_words(generation, count), "span"), GAP, filtered)))
         self._slider.max = max(count, 1)
         self._slider.min = 1 if count else 0
         self._slider.disabled = count < 2
