@@ -154,6 +154,28 @@ def test_the_core_knows_no_page_and_no_browser() -> None:
     assert not found, found
 
 
+def test_the_page_asks_for_answers_and_computes_none() -> None:
+    # Solvers are asked by hpsop_core.evaluation: what the page shows has then one calibration, one failure, one test.
+    found = [f"{module} imports {other}" for module, others in GRAPH.items() if room(module) == "explorer"
+             for other in sorted(others) if room(other) == "hydro"]  # fmt: skip
+    assert not found, found
+
+
+# g, water's density, knots in m/s and km/h: whoever writes one of them is about to compute something.
+CONSTANTS_OF_PHYSICS = (9.80665, 9.81, 1025.0, 1026.0, 999.1, 1000.0 / 1852.0, 1852.0, 0.5144, 0.514444)
+
+
+def test_the_page_holds_no_constant_of_physics() -> None:
+    found = [
+        f"{module}:{node.lineno} {node.value}"
+        for module, path in MODULES.items()
+        if room(module) == "explorer"
+        for node in ast.walk(ast.parse(path.read_text(encoding="utf-8")))
+        if isinstance(node, ast.Constant) and isinstance(node.value, int | float) and node.value in CONSTANTS_OF_PHYSICS
+    ]
+    assert not found, found
+
+
 def test_geometry_and_hydro_hold_no_case_data() -> None:
     found = [f"{module} imports {other}" for module, others in GRAPH.items() if room(module) in ("geometry", "hydro")
              for other in sorted(others) if room(other) == "case"]  # fmt: skip
