@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 import pytest
 
+import hpsop_core
 from hpsop_core.case.case import Case, load_case
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.evaluate import evaluate
@@ -44,6 +45,11 @@ def test_the_waves_of_level_1_carry_the_evaluations_wave_resistance(case: Case, 
         coefficient = field.spectrum.wave_resistance * hull.length**2 / hull.wetted_surface
         # the calibrated coefficient; other tangents than the integral's
         assert coefficient == pytest.approx(condition.wave_coefficient, rel=1e-3)
+
+
+def test_they_stand_in_the_python_interface() -> None:
+    assert hpsop_core.waves is waves
+    assert hpsop_core.pressures is pressures
 
 
 def test_a_design_is_an_evaluation_variables_or_the_initial_one(case: Case, initial: Evaluation) -> None:
