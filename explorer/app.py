@@ -6,9 +6,7 @@ import argparse
 import contextlib
 import importlib
 import io
-import json
 import logging
-import os
 import signal
 import sys
 import threading
@@ -25,6 +23,7 @@ from explorer.layout import build_session, build_shared
 from explorer.server.security import free_port, secure_server
 from explorer.server.worker import LatestWorker
 from explorer.services.library import RunLibrary, runs_folder
+from explorer.services.page_memory import PageMemory, remembered
 from explorer.services.services import open_services
 from explorer.state.app_state import AppState
 from explorer.state.draft import Draft
@@ -37,7 +36,6 @@ from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.runs.reader import open_run
 
 _IMPORT_SECONDS = 4.0
-_MEMORY_FILE = "page.json"
 
 
 class Explorer:
@@ -76,7 +74,7 @@ class Explorer:
             with contextlib.suppress(InputError):
                 case = draft.case()
         worker = LatestWorker("shared")
-        browsers = remembered(self.folder)["browsers"]
+        browsers = remembered(self.folder).browsers
         self.state = AppState(draft, worker, Hub(worker), RunPicture("", case), memory=browsers)
         self.services = open_services(self.state, RunLibrary(self.folder), workers)
         if run is not None:
@@ -120,20 +118,10 @@ class Explorer:
             session.close()
         self.state.tell_all("people")
 
-    # ---- what a reload or a restart brings back --------------------------------------------------------------------
     def _save_memory(self) -> None:
         with self.state.lock:
-            stored = {
-                "browsers": self.state.memory,
-                "run": self.state.picture.name,
-                "draft": self.state.draft.saved(),
-            }
-            text = json.dumps(stored)
-        with contextlib.suppress(OSError):
-            self.folder.mkdir(parents=True, exist_ok=True)
-            fresh = self.folder / (_MEMORY_FILE + ".new")
-            fresh.write_text(text, encoding="utf-8")
-            os.replace(fresh, self.folder / _MEMORY_FILE)
+            memory = PageMemory(dict(self.state.memory), self.state.picture.name, self.state.draft.saved())
+        memory.save(self.folder)
 
     def wait(self) -> None:
         """Until ``close`` or Ctrl-C."""
@@ -161,23 +149,6 @@ def demonstration() -> Path | None:
         return path if path.is_file() else None
 
 
-def remembered(folder: Path) -> dict[str, Any]:
-    """What the page looked like when its server last stopped: browsers, run, draft; empty where nothing is known."""
-    try:
-        stored = json.loads((folder / _MEMORY_FILE).read_text(encoding="utf-8"))
-    except (OSError, ValueError):
-        stored = {}
-    found = stored if isinstance(stored, dict) else {}
-    browsers, draft = found.get("browsers"), found.get("draft")
-    return {
-        "browsers": {str(key): value for key, value in browsers.items() if isinstance(value, dict)}
-        if isinstance(browsers, dict)
-        else {},
-        "run": str(found.get("run", "")),
-        "draft": draft if isinstance(draft, dict) else None,
-    }
-
-
 @dataclass(frozen=True)
 class _Opening:
     """What a start of the command shows: the case to set up, a run, and the settings of last time."""
@@ -196,13 +167,13 @@ def _chosen(what: str | None, folder: Path) -> _Opening:
     # where one was: the run last shown, else the newest of one's own, else the demonstration, else the bare case
     library, memory = RunLibrary(folder), remembered(folder)
     newest = [entry.name for entry in library.entries() if entry.title != "not readable"]
-    for name in (memory["run"], *newest):
+    for name in (memory.run, *newest):
         path = library.path(name)
         if path is not None:
             with contextlib.suppress(HpsopError):
-                return _Opening(open_run(path).case, path, restored=memory["draft"])
+                return _Opening(open_run(path).case, path, restored=memory.draft)
     shown = demonstration()
-    return _Opening(load_case(DEFAULT_CASE), shown, shown is not None, memory["draft"])
+    return _Opening(load_case(DEFAULT_CASE), shown, shown is not None, memory.draft)
 
 
 def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:

@@ -3,7 +3,8 @@
 A file for a thought: ``services`` (both in one piece), ``designs`` (numbers, curves, shapes and fields of a design of
 the run on display), ``answers`` (the same for any case, without a page), ``remembered`` (the cache they share),
 ``runs`` (start, open, control, extend, delete), ``run_keeper`` (one run file and its controller), ``library`` (the
-folder of runs); ``display`` (the little that services may see and do of the state).
+folder of runs), ``page_memory`` (what a restart brings back); ``display`` (the little that services may see and do of
+the state).
 
 Services never meet a view: what changes, they show on the ``Display``, and the state's hub tells the views.
 """

@@ -129,7 +129,10 @@ class Draft:
     # ---- over a restart of the server --------------------------------------------------------------------------------
     def saved(self) -> dict[str, Any]:
         """The draft as JSON."""
-        return {"base": self.base.to_toml(), "changes": self.changes}
+        return {
+            "base": self.base.to_toml(),
+            "changes": {section: dict(fields) for section, fields in self.changes.items()},
+        }
 
     def restore(self, saved: Mapping[str, Any]) -> None:
         """Come back to what ``saved`` described; what no longer fits is left at the preset's own value."""
