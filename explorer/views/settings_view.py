@@ -101,7 +101,7 @@ class SettingsView:
     # ---- bounds ----------------------------------------------------------------------------------------------------
     def _add_slider(self, key: str) -> None:
         variable, value = VARIABLE_TABLE[key], getattr(self._app.draft.initial(), key)
-        low, high = (variable.typed(bound) for bound in self._app.draft.base.bounds.as_dict()[key])
+        low, high = (variable.typed(bound) for bound in self._app.draft.value("bounds", key))
         least, most = (variable.typed(end) for end in variable.reach_near(value))
         slider = self._gui.add_multi_slider(
             variable_label(variable),
