@@ -1,1 +1,6 @@
-"""Charts drawn as SVG text: pure functions from numbers to strings, with no browser and no viser in them."""
+"""Charts of a run that answer to the pointer. How they are drawn stands in ``hpsop_core.charts``.
+
+* ``pareto``: what the Pareto chart shows of a run, and which design a click means.
+* ``parallel``: parallel coordinates, and which range a brush means.
+* ``drivers``: which variables drive which results, as a table.
+"""

@@ -9,10 +9,11 @@ from numpy.typing import NDArray
 
 from explorer.state.run_picture import RunPicture
 from hpsop_core.case.variables import VARIABLE_TABLE
-from hpsop_core.markup import escape, symbol_svg
+from hpsop_core.markup import Markup, fill, joined, symbol_svg
 from hpsop_core.quantities import OBJECTIVES, Quantity, all_quantities, free_variables, number_text
 
 _MOST_LINES = 350
+_TEXT = '<text x="{:.1f}" y="{:.1f}" text-anchor="middle" class="{}">{}</text>'
 _RESULTS = ("block_coefficient", "total_resistance_1", "open_water_efficiency_1", "delivered_power_1")
 
 
@@ -36,14 +37,14 @@ def parallel_chart(
     generation: int | None,
     width: float,
     height: float,
-) -> str:
+) -> Markup:
     """The chart as SVG: the archive thin, the front thick, what a brush keeps out faded."""
     axes = [(quantity, picture.column(quantity.key)) for quantity in axes_of(picture)]
     left, right, top, bottom = 26.0, 26.0, 46.0, 20.0
     count = len(axes)
     gap = (width - left - right) / max(count - 1, 1)
     plot_height = height - top - bottom
-    parts = []
+    parts: list[Markup] = []
     usable = picture.feasible & ~picture.failed
     if generation is not None:
         usable &= picture.generation <= generation
@@ -68,46 +69,39 @@ def parallel_chart(
                 points.append(f"{left + index * gap:.0f} {top + (1 - (value - low) / (high - low)) * plot_height:.1f}")
             if points:
                 fade = "opacity:.06" if not keep[row] else "opacity:.35" if css == "archive" else "opacity:.9"
-                parts.append(f'<path d="M{"L".join(points)}" class="line thin {css}" style="{fade}"/>')
+                path = "M" + "L".join(points)
+                parts.append(fill('<path d="{}" class="line thin {}" style="{}"/>', path, css, fade))
                 if row == selected_row:
-                    parts.append(f'<path d="M{"L".join(points)}" class="line selected" style="stroke-width:2.6"/>')
+                    parts.append(fill('<path d="{}" class="line selected" style="stroke-width:2.6"/>', path))
     for index, (quantity, _) in enumerate(axes):
         x = left + index * gap
         low, high = limits[index]
         title_y = 11 if index % 2 == 0 else 25
-        parts.append(f'<path d="M{x:.1f} {top:.1f}V{top + plot_height:.1f}" class="axis"/>')
-        parts.append(
-            f'<text x="{x:.1f}" y="{title_y}" text-anchor="middle" class="axis-title">'
-            f"<title>{escape(quantity.label)}</title>{symbol_svg(_axis_title(quantity))}</text>"
-        )
-        parts.append(
-            f'<text x="{x:.1f}" y="{top - 4:.1f}" text-anchor="middle" class="note">'
-            f"{number_text(high, min(quantity.decimals, 3))}</text>"
-        )
-        parts.append(
-            f'<text x="{x:.1f}" y="{top + plot_height + 12:.1f}" text-anchor="middle" class="note">'
-            f"{number_text(low, min(quantity.decimals, 3))}</text>"
-        )
+        parts.append(fill('<path d="M{:.1f} {:.1f}V{:.1f}" class="axis"/>', x, top, top + plot_height))
+        title = fill("<title>{}</title>{}", quantity.label, symbol_svg(_axis_title(quantity)))
+        parts.append(fill(_TEXT, x, title_y, "axis-title", title))
+        for value, y in ((high, top - 4), (low, top + plot_height + 12)):
+            parts.append(fill(_TEXT, x, y, "note", number_text(value, min(quantity.decimals, 3))))
         if quantity.key in filters:
             a, b = filters[quantity.key]
             y0 = top + (1 - (min(b, high) - low) / (high - low)) * plot_height
             y1 = top + (1 - (max(a, low) - low) / (high - low)) * plot_height
-            parts.append(
-                f'<rect x="{x - 6:.1f}" y="{y0:.1f}" width="12" height="{max(y1 - y0, 2):.1f}" class="brush"/>'
-            )
+            box = '<rect x="{:.1f}" y="{:.1f}" width="12" height="{:.1f}" class="brush"/>'
+            parts.append(fill(box, x - 6, y0, max(y1 - y0, 2)))
     if not len(rows):
-        parts.append(
-            f'<text x="{width / 2:.0f}" y="{height / 2:.0f}" text-anchor="middle" class="empty">no designs yet</text>'
-        )
-    area = f"{left:g},{top:g},{width - left - right:g},{plot_height:g}"
-    hint = (
-        '<p class="soft">Drag along an axis to keep a range (it filters the Pareto chart too); click an axis to drop '
-        "its range.</p>"
-    )
-    return (
-        f'<svg class="chart" data-chart="parallel" data-plot="{area}" data-limits="0,1,0,1" data-drag="brush" '
-        f'data-click="1" viewBox="0 0 {width:g} {height:g}" role="img" aria-label="parallel coordinates">'
-        f"{''.join(parts)}</svg>{hint}"
+        parts.append(fill(_TEXT, width / 2, height / 2, "empty", "no designs yet"))
+    return fill(
+        '<svg class="chart" data-chart="parallel" data-plot="{left:g},{top:g},{wide:g},{high:g}" '
+        'data-limits="0,1,0,1" data-drag="brush" data-click="1" viewBox="0 0 {width:g} {height:g}" role="img" '
+        'aria-label="parallel coordinates">{parts}</svg><p class="soft">Drag along an axis to keep a range (it filters '
+        "the Pareto chart too); click an axis to drop its range.</p>",
+        left=left,
+        top=top,
+        wide=width - left - right,
+        high=plot_height,
+        width=width,
+        height=height,
+        parts=joined(parts),
     )
 
 

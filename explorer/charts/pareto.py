@@ -8,25 +8,17 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from explorer.charts.plot import Limits, Plot, padded
 from explorer.state.run_picture import GenerationPicture, RunPicture
+from hpsop_core.charts.axis import Limits, padded
+from hpsop_core.charts.frame import Key
+from hpsop_core.charts.looks import Sheet
+from hpsop_core.charts.plot import Plot
+from hpsop_core.charts.search import COINCIDENT, Cloud, Front, Mark, draw_marks
+from hpsop_core.charts.search import pareto_chart as drawn_chart
+from hpsop_core.markup import Markup
 
 _FRONT_BONUS = 5.0
 _REACH = 18.0
-_COUNT_SPACE = 26.0
-_COINCIDENT = 2.5
-
-
-@dataclass(frozen=True)
-class ParetoMark:
-    """A design that stands out: selection, pin, initial design."""
-
-    f1: float
-    f2: float
-    shape: str
-    size: float
-    css: str
-    title: str
 
 
 @dataclass(frozen=True)
@@ -109,81 +101,74 @@ def pareto_background(
         titles: of the axes.
         width, height: px.
     """
-    x_limits, y_limits = options.limits or automatic_limits(picture, options)
-    plot = Plot(width, height, x_limits, y_limits, *titles, margins=(50, 18, 8, 34))
     drawn = drawn_designs(picture, options)
     keep = picture.inside(options.filters or {})
     f = picture.objectives
     archive = drawn.rows[~drawn.front]
-    groups = (
-        ("infeasible", archive[~picture.feasible[archive]], 2.0),
-        ("archive", archive[picture.feasible[archive] & ~picture.by_hand[archive]], 2.0),
-    )
-    for css, rows, radius in groups:
-        for inside, extra in ((False, "opacity:.18"), (True, "opacity:.75")):
-            part = rows[keep[rows] == inside]
-            plot.dots(f[part, 0], f[part, 1], radius, css, extra)
+    clouds = []
+    for css, rows in (
+        ("infeasible", archive[~picture.feasible[archive]]),
+        ("archive", archive[picture.feasible[archive] & ~picture.by_hand[archive]]),
+    ):
+        for inside, style in ((False, "opacity:.18"), (True, "opacity:.75")):
+            clouds.append(Cloud(f[rows[keep[rows] == inside]], css, style=style))
+    fronts = _drawn_fronts(picture, options, keep)
+    limits = options.limits or automatic_limits(picture, options)
+    plot = drawn_chart(clouds, fronts, _fixed_marks(picture, options), limits, titles, Sheet(width, height))
     if options.filters and {"f1", "f2"} <= set(options.filters):
         (a, b), (c, d) = options.filters["f1"], options.filters["f2"]
         plot.rectangle(a, b, c, d, "boxed")
+    return plot
+
+
+def _drawn_fronts(picture: RunPicture, options: ParetoOptions, keep: NDArray[np.bool_]) -> list[Front]:
+    f = picture.objectives
     fronts = _fronts(picture, options.generation)
+    drawn = []
     for item in fronts:
         rows = picture.rows(item.front)
         rows = rows[np.argsort(f[rows, 0], kind="stable")]
         newest = item is fronts[-1]
-        css = f"level{item.level}"
-        plot.line(f[rows, 0], f[rows, 1], f"{css} thin", "" if newest else "opacity:.45")
-        for row in rows:
-            fade = "" if keep[row] else "opacity:.2"
-            if newest:
-                plot.mark(f[row, 0], f[row, 1], "circle", 4.2, css, fade)
-            else:
-                plot.mark(f[row, 0], f[row, 1], "circle", 3.0, css, fade or "opacity:.55")
-    if fronts:
-        _count_coincident(plot, f[picture.rows(fronts[-1].front)])
-    for row in np.flatnonzero(picture.by_hand & ~picture.failed):
-        plot.mark(f[row, 0], f[row, 1], "square", 4.0, "hand", title=f"made by hand: design {picture.ids[row]}")
-    if options.generation is None:
-        for design_id, shape, css, size, word in (
-            (picture.knee, "diamond", "knee", 6.0, "knee"),
-            (picture.compromise, "star", "compromise", 8.0, "compromise"),
-        ):
-            row = picture.row(design_id) if design_id is not None else None
-            if row is not None:
-                plot.mark(f[row, 0], f[row, 1], shape, size, css, title=f"{word}: design {design_id}")
-    return plot
+        whole = "" if newest else "opacity:.55"
+        faded = [whole if keep[row] else "opacity:.2" for row in rows]
+        line = "" if newest else "opacity:.45"
+        drawn.append(Front(f[rows], f"level{item.level}", 4.2 if newest else 3.0, line, faded))
+    return drawn
 
 
-def pareto_chart(picture: RunPicture, background: Plot, marks: Sequence[ParetoMark]) -> str:
+def _fixed_marks(picture: RunPicture, options: ParetoOptions) -> list[Mark]:
+    f = picture.objectives
+    marks = [
+        Mark(f[row, 0], f[row, 1], "square", 4.0, "hand", f"made by hand: design {picture.ids[row]}")
+        for row in np.flatnonzero(picture.by_hand & ~picture.failed)
+    ]
+    if options.generation is not None:
+        return marks
+    for design_id, shape, css, size, word in (
+        (picture.knee, "diamond", "knee", 6.0, "knee"),
+        (picture.compromise, "star", "compromise", 8.0, "compromise"),
+    ):
+        row = picture.row(design_id) if design_id is not None else None
+        if row is not None:
+            marks.append(Mark(f[row, 0], f[row, 1], shape, size, css, f"{word}: design {design_id}"))
+    return marks
+
+
+def pareto_chart(picture: RunPicture, background: Plot, marks: Sequence[Mark], keys: Sequence[Key] = ()) -> Markup:
     """The chart as SVG.
 
     Args:
         picture: the run.
         background: of ``pareto_background``; it stays as it is.
         marks: drawn last, in order.
+        keys: the legend.
     """
     plot = background.copy()
-    for mark in marks:
-        plot.mark(mark.f1, mark.f2, mark.shape, mark.size, mark.css, title=mark.title)
+    plot.keys += keys
+    draw_marks(plot, marks)
     if not len(picture.ids) and len(marks) <= 2:
         plot.message("No designs yet.\nPress Start: each generation's front appears here.", numbers=True)
     return plot.svg("pareto", 'data-drag="pan" data-hover="1" data-click="1" data-box="1" tabindex="0"')
-
-
-def _count_coincident(plot: Plot, points: NDArray[np.float64]) -> None:
-    """A small number beside marks that hide others: "×3" are three designs on one spot."""
-    pixels = np.column_stack([plot.px(points[:, 0]), plot.py(points[:, 1])])
-    waiting = list(range(len(points)))
-    last: NDArray[np.float64] | None = None
-    while waiting:
-        first = waiting[0]
-        same = [index for index in waiting if float(np.hypot(*(pixels[index] - pixels[first]))) <= _COINCIDENT]
-        waiting = [index for index in waiting if index not in same]
-        # where marks crowd, numbers would only cover one another
-        free = last is None or float(np.hypot(*(pixels[first] - last))) >= _COUNT_SPACE
-        if len(same) > 1 and free:
-            last = pixels[first]
-            plot.text(points[first, 0], points[first, 1], f"×{len(same)}", "count", dx=6, dy=-5)
 
 
 def pick(
@@ -219,7 +204,7 @@ def pick(
     if distance[best] > _REACH:
         return []
     apart = np.hypot(dx - dx[best], dy - dy[best])
-    same = np.flatnonzero(apart <= _COINCIDENT)
+    same = np.flatnonzero(apart <= COINCIDENT)
     same = same[np.lexsort((same, ~drawn.front[same], apart[same] > 1e-9))]
     ordered = [best, *[int(index) for index in same if index != best]]
     return [int(picture.ids[drawn.rows[index]]) for index in ordered]

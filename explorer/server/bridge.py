@@ -22,6 +22,7 @@ from typing import Any
 import viser
 
 from explorer.server.html_slot import Slot
+from hpsop_core.charts.style import SCREEN, style_sheet
 from hpsop_core.markup import Markup, fill
 
 PAGE_VERSION = "1"
@@ -117,9 +118,10 @@ class Bridge:
         Slot(
             gui,
             fill(
-                '<div class="hpsop-root"></div><style>{}\n{}</style>'
+                '<div class="hpsop-root"></div><style>{}\n{}\n{}</style>'
                 '<img alt="" style="display:none" src="data:," onerror="{}">',
                 Markup(_asset("page.css")),
+                Markup(style_sheet(SCREEN)),
                 hide_row,
                 script,
             ),

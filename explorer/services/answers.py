@@ -6,13 +6,10 @@ is kept in small caches that all browsers share; memory stays flat however many 
 
 from __future__ import annotations
 
-import numpy as np
-
-from explorer.charts.curves import DesignCurves
 from explorer.services.remembered import Remembered
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
-from hpsop_core.evaluation.curves import HullLines, hull_lines, resistance_points, thrust_curves
+from hpsop_core.evaluation.curves import DesignCurves, HullLines, hull_lines, resistance_points, thrust_curves
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
@@ -61,16 +58,7 @@ class Answers:
     def _compute_curves(self, case: Case, evaluation: Evaluation) -> DesignCurves:
         reference = self.reference(case, evaluation.level)
         points = resistance_points(case, evaluation, reference, _FROUDE_ABOVE, _FROUDE_STEP[evaluation.level])
-        thrust = thrust_curves(case, evaluation, points)
-        return DesignCurves(
-            froude_number=thrust.froude_number,
-            speed=np.array([point.speed for point in points]),
-            total_resistance=np.array([point.total_resistance for point in points]),
-            wave_resistance=np.array([point.wave_resistance for point in points]),
-            thrust_required=thrust.required,
-            thrust_available=thrust.available,
-            level=evaluation.level,
-        )
+        return DesignCurves(points, thrust_curves(case, evaluation, points))
 
     def lines(self, case: Case, variables: DesignVariables) -> HullLines:
         """Sections and sectional areas.

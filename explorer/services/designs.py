@@ -7,7 +7,6 @@ from typing import Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from explorer.charts.curves import DesignCurves
 from explorer.scene.geometry import SceneGeometry, ghost_segments, scene_geometry
 from explorer.scene.pressure import PressureMap, blade_map, hull_map
 from explorer.services.answers import Answers
@@ -17,7 +16,7 @@ from explorer.state.shown import Shown
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import HpsopError
-from hpsop_core.evaluation.curves import HullLines
+from hpsop_core.evaluation.curves import DesignCurves, HullLines
 from hpsop_core.evaluation.fields import WaveField, blade_pressure, hull_pressure, waves
 from hpsop_core.evaluation.reference import Reference
 from hpsop_core.evaluation.result import Evaluation

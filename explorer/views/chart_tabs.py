@@ -2,44 +2,39 @@
 
 from __future__ import annotations
 
-from explorer.charts.curves import (
-    DesignCurves,
-    Series,
-    best_chart,
-    body_plan,
-    convergence_chart,
-    open_water_chart,
-    resistance_chart,
-    sectional_area_chart,
-    thrust_chart,
-)
 from explorer.charts.drivers import drivers_table
 from explorer.charts.parallel import parallel_chart
 from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.views.charts_view import ChartTab
+from explorer.views.chips import soft
 from explorer.views.on_display import overlaid
-from hpsop_core.evaluation.curves import HullLines
+from hpsop_core.charts.hulls import body_plan_chart, sectional_area_chart
+from hpsop_core.charts.looks import Look, Sheet
+from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thrust_chart
+from hpsop_core.charts.search import best_chart, convergence_chart
+from hpsop_core.evaluation.curves import DesignCurves, HullLines
 from hpsop_core.evaluation.result import Evaluation
-from hpsop_core.markup import escape
+from hpsop_core.markup import Markup, fill, joined
 
 
-def _height(session: Session, share: float, least: float = 215.0, most: float = 330.0) -> float:
-    return min(max(share * session.size[1], least), most)
+def _sheet(session: Session, share: float, least: float = 215.0, most: float = 330.0) -> Sheet:
+    """As wide as the panel; as high as a share of the window within limits."""
+    return Sheet(session.chart_width, min(max(share * session.size[1], least), most))
 
 
-def _open_water(session: Session, designs: Designs) -> str:
-    curves = [(series, shown.evaluation) for series, shown in overlaid(session, designs)]
-    return open_water_chart(curves, session.chart_width, _height(session, 0.30))
+def _open_water(session: Session, designs: Designs) -> Markup:
+    curves = [(look, shown.evaluation) for look, shown in overlaid(session, designs)]
+    return open_water_chart(curves, _sheet(session, 0.30)).svg("open_water")
 
 
-def _with_curves(session: Session, designs: Designs) -> list[tuple[Series, Evaluation, DesignCurves]]:
+def _with_curves(session: Session, designs: Designs) -> list[tuple[Look, Evaluation, DesignCurves]]:
     found = []
     missing = False
-    for series, shown in overlaid(session, designs):
+    for look, shown in overlaid(session, designs):
         curves = designs.known_curves(shown.evaluation)
         if curves is not None:
-            found.append((series, shown.evaluation, curves))
+            found.append((look, shown.evaluation, curves))
         else:
             missing = missing or shown.evaluation.ok
     if missing:
@@ -58,55 +53,52 @@ def _compute_curves(session: Session, designs: Designs) -> None:
             return
 
 
-def _resistance(session: Session, designs: Designs) -> str:
+def _resistance(session: Session, designs: Designs) -> Markup:
     curves = _with_curves(session, designs)
-    height = _height(session, 0.24, 190.0, 260.0)
+    sheet = _sheet(session, 0.24, 190.0, 260.0)
     level = session.selected.evaluation.level if session.selected else 1
     complete = len(curves) == len(overlaid(session, designs))
     waiting = "" if complete else " The other designs' curves are being computed …"
-    note = f'<p class="soft">Level {level}, each at its own Froude number; marks are the conditions.{waiting}</p>'
-    return (
-        resistance_chart(curves, "total", session.chart_width, height)
-        + resistance_chart(curves, "wave", session.chart_width, height)
-        + note
+    points = [(look, found.points, evaluation) for look, evaluation, found in curves]
+    return fill(
+        '{}{}<p class="soft">Level {}, each at its own Froude number; marks are the conditions.{}</p>',
+        resistance_chart(points, "total", sheet).svg("resistance_total"),
+        resistance_chart(points, "wave", sheet).svg("resistance_wave"),
+        level,
+        waiting,
     )
 
 
-def _thrust(session: Session, designs: Designs) -> str:
-    return thrust_chart(_with_curves(session, designs), session.chart_width, _height(session, 0.30))
+def _thrust(session: Session, designs: Designs) -> Markup:
+    curves = [(look, found.thrust, evaluation) for look, evaluation, found in _with_curves(session, designs)]
+    return thrust_chart(curves, _sheet(session, 0.30)).svg("thrust")
 
 
-def _with_lines(session: Session, designs: Designs) -> list[tuple[Series, HullLines]]:
+def _with_lines(session: Session, designs: Designs) -> list[tuple[Look, HullLines]]:
     return [
-        (series, designs.lines(shown.evaluation.variables))
-        for series, shown in overlaid(session, designs)
+        (look, designs.lines(shown.evaluation.variables))
+        for look, shown in overlaid(session, designs)
         if shown.evaluation.hull is not None
     ]
 
 
-def _lines(session: Session, designs: Designs) -> str:
+def _lines(session: Session, designs: Designs) -> Markup:
     lines = _with_lines(session, designs)
-    return body_plan(lines, session.chart_width, _height(session, 0.31, 220.0, 330.0)) + sectional_area_chart(
-        lines, session.chart_width, _height(session, 0.24, 180.0, 240.0)
-    )
+    plan = body_plan_chart(lines, _sheet(session, 0.31, 220.0, 330.0)).svg("body_plan")
+    return plan + sectional_area_chart(lines, _sheet(session, 0.24, 180.0, 240.0)).svg("sectional_area")
 
 
-def _parallel(session: Session, _designs: Designs) -> str:
-    return parallel_chart(
-        session.picture,
-        session.filters,
-        session.selected.design_id if session.selected else None,
-        session.scrubbed,
-        session.chart_width,
-        _height(session, 0.36, 240.0, 360.0),
-    )
+def _parallel(session: Session, _designs: Designs) -> Markup:
+    selected = session.selected.design_id if session.selected else None
+    sheet = _sheet(session, 0.36, 240.0, 360.0)
+    return parallel_chart(session.picture, session.filters, selected, session.scrubbed, sheet.width, sheet.height)
 
 
-def _drivers(session: Session, _designs: Designs) -> str:
+def _drivers(session: Session, _designs: Designs) -> Markup:
     return drivers_table(session.picture)
 
 
-def _convergence(session: Session, _designs: Designs) -> str:
+def _convergence(session: Session, _designs: Designs) -> Markup:
     picture = session.picture
     numbers = [item.number for item in picture.generations]
     levels = [item.level for item in picture.generations]
@@ -115,37 +107,35 @@ def _convergence(session: Session, _designs: Designs) -> str:
     for item in picture.generations:
         rows = picture.rows(item.front)
         best.append(tuple(picture.objectives[rows].min(axis=0)) if len(rows) else (float("nan"), float("nan")))
-    height = _height(session, 0.26, 190.0, 270.0)
-    note = '<p class="soft">Hypervolume of the feasible front against (1.2, 1.2); each level has its own series.</p>'
-    return (
-        convergence_chart(numbers, levels, values, picture.total_generations, session.chart_width, height)
-        + best_chart(numbers, levels, best, picture.total_generations, session.chart_width, height)
-        + note
+    sheet, total = _sheet(session, 0.26, 190.0, 270.0), picture.total_generations
+    return fill(
+        '{}{}<p class="soft">Hypervolume of the feasible front against (1.2, 1.2); each level has its own series.</p>',
+        convergence_chart(numbers, levels, values, total, sheet).svg("convergence"),
+        best_chart(numbers, levels, best, total, sheet).svg("best"),
     )
 
 
-def _failures(session: Session, designs: Designs) -> str:
+def _failures(session: Session, designs: Designs) -> Markup:
     picture = session.picture
     ids = [int(value) for value in picture.ids[picture.failed]]
     if not ids:
         done = len(picture.ids)
-        return f'<p class="soft">{"No evaluation failed" if done else "Nothing evaluated yet"}' + (
-            f" among {done}.</p>" if done else ".</p>"
-        )
-    rows = ["<tr><th>design</th><th>level</th><th>gen.</th><th>stage</th><th>reason</th></tr>"]
+        return soft(f"No evaluation failed among {done}." if done else "Nothing evaluated yet.")
+    rows = [Markup("<tr><th>design</th><th>level</th><th>gen.</th><th>stage</th><th>reason</th></tr>")]
     for design_id in ids[-100:][::-1]:
         shown = designs.shown(design_id)
         if shown is None:
             continue
         evaluation = shown.evaluation
-        variables = ", ".join(f"{key} {value:g}" for key, value in evaluation.variables.as_dict().items())
-        rows.append(
-            f'<tr title="{escape(variables)}"><td>{design_id}</td><td>{evaluation.level}</td>'
-            f"<td>{shown.generation}</td><td>{escape(evaluation.stage)}</td>"
-            f'<td class="name" style="text-align:left">{escape(evaluation.reason)}</td></tr>'
+        row = (
+            '<tr title="{}"><td>{}</td><td>{}</td><td>{}</td><td>{}</td>'
+            '<td class="name" style="text-align:left">{}</td></tr>'
         )
-    more = f'<p class="soft">the latest 100 of {len(ids)}</p>' if len(ids) > 100 else ""
-    return f'<table class="numbers">{"".join(rows)}</table>{more}'
+        variables = ", ".join(f"{key} {value:g}" for key, value in evaluation.variables.as_dict().items())
+        cells = (design_id, evaluation.level, shown.generation, evaluation.stage, evaluation.reason)
+        rows.append(fill(row, variables, *cells))
+    more = soft(f"the latest 100 of {len(ids)}") if len(ids) > 100 else ""
+    return fill('<table class="numbers">{}</table>{}', joined(rows), more)
 
 
 _DESIGN = frozenset({"selection", "pins"})

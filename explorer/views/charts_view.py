@@ -32,7 +32,7 @@ class ChartTab:
     title: str
     of: str
     topics: frozenset[str]
-    render: Callable[[Session, Designs], str]
+    render: Callable[[Session, Designs], Markup]
 
 
 class ChartsView:
@@ -64,7 +64,7 @@ class ChartsView:
         self._draw_chart(chosen)
 
     def _draw_chart(self, chosen: ChartTab) -> None:
-        content = Markup(chosen.render(self._session, self._designs))
+        content = chosen.render(self._session, self._designs)
         self._html.show(box(fill('<div data-chart-tab="{}">{}</div>', chosen.name, content)))
 
     def _topic(self, topic: str) -> None:

@@ -2,10 +2,10 @@
 
 from __future__ import annotations
 
-from explorer.charts.curves import Series
 from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.state.shown import Shown
+from hpsop_core.charts.looks import Look
 
 
 def select_design(session: Session, designs: Designs, design_id: int) -> None:
@@ -32,15 +32,15 @@ def ghost_of(session: Session, designs: Designs) -> tuple[Shown | None, int | No
     return (None if same else found), place
 
 
-def overlaid(session: Session, designs: Designs) -> list[tuple[Series, Shown]]:
+def overlaid(session: Session, designs: Designs) -> list[tuple[Look, Shown]]:
     """What charts overlay: the initial design dashed, pins, and the selection last."""
     selected = session.selected
     level = selected.evaluation.level if selected else 1
-    shown = [(Series("initial", "initial", "dash"), designs.initial(level))]
+    shown = [(Look("initial", "initial", "dash"), designs.initial(level))]
     for index, item in enumerate(session.pins):
         if selected is None or item.key != selected.key:
             other = f" (level {item.evaluation.level})" if item.evaluation.level != level else ""
-            shown.append((Series(f"pinned {item.label.lower()}{other}", f"pin{index + 1}"), item))
+            shown.append((Look(f"pinned {item.label.lower()}{other}", f"pin{index + 1}"), item))
     if selected is not None and selected.kind != "initial":
-        shown.append((Series(selected.label, "selected"), selected))
+        shown.append((Look(selected.label, "selected"), selected))
     return shown

@@ -150,6 +150,19 @@ def thrust_curves(case: Case, evaluation: Evaluation, points: tuple[ResistancePo
     )
 
 
+@dataclass(frozen=True, eq=False)
+class DesignCurves:
+    """What a design does over speed.
+
+    Attributes:
+        points: resistance, ascending in Froude number.
+        thrust: required and available at the same Froude numbers.
+    """
+
+    points: tuple[ResistancePoint, ...]
+    thrust: ThrustCurves
+
+
 def open_water_curve(curve: PropellerCurve) -> OpenWaterCurve:
     """A propeller's curve in steps of ``CURVE_STEP`` of the advance coefficient."""
     lower, upper = curve.range

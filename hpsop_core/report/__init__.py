@@ -2,7 +2,7 @@
 
 * report: the file from a run, chapter by chapter
 * words: what the case assumes and how far its numbers can be trusted; tables: the tables
-* charts: the charts, values in, figures out; figures: how a figure becomes inline SVG
+* looks: how designs look in its charts, and how large these are
 * html_page: the file's frame and how it is put in its place
 """
 

@@ -1,20 +1,21 @@
 """One self-contained HTML file: the page's frame, its tables, and how it is put in its place.
 
-Everything that comes from a case, a path or an error message passes ``text``; nothing is fetched from anywhere.
+A string is text and escaped, ``Markup`` is not (see ``hpsop_core.markup``); nothing is fetched from anywhere.
 """
 
 from __future__ import annotations
 
 import contextlib
-import html
 import os
-import re
 import tempfile
 from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
+from hpsop_core.charts.plot import Plot
+from hpsop_core.charts.style import PRINT, style_sheet
 from hpsop_core.errors import InputError
+from hpsop_core.markup import Markup, fill, joined, one_line, xml_text
 
 _STYLE = """
 :root { --ink: #1d2733; --soft: #5b6775; --line: #d9dfe6; --tint: #f4f6f9; --accent: #1f5fa8; --warn: #9a4b00;
@@ -85,28 +86,20 @@ footer { margin-top: 3rem; border-top: 1px solid var(--line); padding-top: .8rem
 """
 
 
-def text(value: object) -> str:
-    """The value as text of a page: markup characters escaped, line ends made blanks."""
-    return html.escape(" ".join(str(value).split()))
-
-
-def symbol(value: str) -> str:
-    """A quantity's symbol with its subscripts: R_T1 as R with T1 below."""
-    pieces = re.split(r"_([^\s,;:)\]]+)", value)
-    pairs = zip(pieces[::2], [*pieces[1::2], ""], strict=True)
-    return "".join(html.escape(base) + (f"<sub>{html.escape(below)}</sub>" if below else "") for base, below in pairs)
+Words = str | Markup
+"""Text, which is escaped, or markup, which is not."""
 
 
 def table(
-    header: Sequence[str],
-    rows: Sequence[Sequence[str]],
+    header: Sequence[Words],
+    rows: Sequence[Sequence[Words]],
     *,
-    caption: str = "",
+    caption: Words = "",
     words: Sequence[int] = (),
     marked: Sequence[int] = (),
     wide: bool = False,
-) -> str:
-    """A table. Cells and caption are markup already; a row of one cell is a heading across the table.
+) -> Markup:
+    """A table; a row of one cell is a heading across it.
 
     Args:
         header, rows: cells.
@@ -116,36 +109,63 @@ def table(
         wide: many columns: smaller in print.
     """
 
-    def cells(tag: str, row: Sequence[str]) -> str:
-        return "".join(
-            f"<{tag}{' class=words' if index in words else ''}>{cell}</{tag}>" for index, cell in enumerate(row)
+    def cells(tag: str, row: Sequence[Words]) -> Markup:
+        return joined(
+            fill("<{0}{1}>{2}</{0}>", tag, Markup(" class=words") if index in words else "", cell)
+            for index, cell in enumerate(row)
         )
 
     body = []
     for number, row in enumerate(rows):
         if len(row) == 1 and len(header) > 1:
-            body.append(f'<tr class="group"><th colspan="{len(header)}" scope="rowgroup">{row[0]}</th></tr>')
+            group = '<tr class="group"><th colspan="{}" scope="rowgroup">{}</th></tr>'
+            body.append(fill(group, len(header), row[0]))
         else:
-            body.append(f"<tr{' class=mark' if number in marked else ''}>{cells('td', row)}</tr>")
-    head = f"<thead><tr>{cells('th', header)}</tr></thead>"
-    title = f"<caption>{caption}</caption>" if caption else ""
-    kind = ' class="wide"' if wide else ""
-    return f'<div class="scroll"><table{kind}>{title}{head}<tbody>{"".join(body)}</tbody></table></div>'
+            body.append(fill("<tr{}>{}</tr>", Markup(" class=mark") if number in marked else "", cells("td", row)))
+    return fill(
+        '<div class="scroll"><table{}>{}<thead><tr>{}</tr></thead><tbody>{}</tbody></table></div>',
+        Markup(' class="wide"') if wide else "",
+        fill("<caption>{}</caption>", caption) if caption else "",
+        cells("th", header),
+        joined(body),
+    )
 
 
-def facts(pairs: Sequence[tuple[str, str]]) -> str:
-    """Names beside their values; both are markup already."""
-    return '<dl class="facts">' + "".join(f"<dt>{name}</dt><dd>{value}</dd>" for name, value in pairs) + "</dl>"
+def facts(pairs: Sequence[tuple[Words, Words]]) -> Markup:
+    """Names beside their values."""
+    return fill('<dl class="facts">{}</dl>', joined(fill("<dt>{}</dt><dd>{}</dd>", *pair) for pair in pairs))
 
 
-def bullets(lines: Sequence[str]) -> str:
-    """A list; lines are markup already."""
-    return "<ul>" + "".join(f"<li>{line}</li>" for line in lines) + "</ul>"
+def bullets(lines: Sequence[Words]) -> Markup:
+    """A list."""
+    return fill("<ul>{}</ul>", joined(fill("<li>{}</li>", line) for line in lines))
 
 
-def pair(first: str, second: str) -> str:
+def paragraph(words: Words, css: str = "") -> Markup:
+    """A paragraph of a class: "soft", "banner", "lead"."""
+    return fill('<p class="{}">{}</p>', css, words) if css else fill("<p>{}</p>", words)
+
+
+def pair(first: Words, second: Words) -> Markup:
     """Two figures side by side where there is room."""
-    return f'<div class="pair">{first}{second}</div>'
+    return fill('<div class="pair">{}{}</div>', first, second)
+
+
+def unit_html(unit: str) -> Markup:
+    """A unit in its brackets, as tables have it."""
+    return fill("<span class=unit>[{}]</span>", unit or "–")
+
+
+def chart_html(plot: Plot, name: str, caption: str) -> Markup:
+    """A chart with its caption.
+
+    Args:
+        plot: of the print style.
+        name: one word, unique on the page.
+        caption: text.
+    """
+    figure = '<figure id="figure-{}">{}<figcaption>{}</figcaption></figure>'
+    return fill(figure, name, plot.svg(name), one_line(caption))
 
 
 @dataclass(frozen=True)
@@ -154,37 +174,48 @@ class Section:
 
     Attributes:
         anchor: one word, unique on the page.
-        title: plain text.
-        body: markup.
+        title: text.
+        body: markup; a plain string would be shown as text.
     """
 
     anchor: str
     title: str
-    body: str
+    body: Words
 
 
-def page(title: str, head: str, sections: Sequence[Section], footer: str) -> str:
+def page(title: str, head: Words, sections: Sequence[Section], footer: str) -> str:
     """A whole document.
 
     Args:
-        title: plain text, of window and page.
-        head: markup below the title.
+        title: text, of window and page.
+        head: below the title.
         sections: in their order; linked from the top.
-        footer: plain text.
+        footer: text.
     """
-    links = " ".join(f'<a href="#{item.anchor}">{text(item.title)}</a>' for item in sections)
-    body = "\n".join(
-        f'<section id="{item.anchor}"><h2>{text(item.title)}</h2>\n{item.body}\n</section>' for item in sections
+    links = joined((fill('<a href="#{}">{}</a>', item.anchor, one_line(item.title)) for item in sections), " ")
+    body = joined(
+        (
+            fill('<section id="{}"><h2>{}</h2>\n{}\n</section>', item.anchor, one_line(item.title), item.body)
+            for item in sections
+        ),
+        "\n",
     )
-    return (
+    document = fill(
         '<!DOCTYPE html>\n<html lang="en">\n<head>\n<meta charset="utf-8">\n'
         '<meta name="viewport" content="width=device-width, initial-scale=1">\n'
         # Not even a slip can fetch something.
         "<meta http-equiv=\"Content-Security-Policy\" content=\"default-src 'none'; style-src 'unsafe-inline'; "
         'img-src data:">\n'
-        f"<title>{text(title)}</title>\n<style>{_STYLE}</style>\n</head>\n<body>\n<header><h1>{text(title)}</h1>\n"
-        f"{head}</header>\n<nav>{links}</nav>\n{body}\n<footer>{text(footer)}</footer>\n</body>\n</html>\n"
+        "<title>{title}</title>\n<style>{style}</style>\n</head>\n<body>\n<header><h1>{title}</h1>\n"
+        "{head}</header>\n<nav>{links}</nav>\n{body}\n<footer>{footer}</footer>\n</body>\n</html>\n",
+        title=one_line(title),
+        style=Markup(_STYLE + style_sheet(PRINT)),
+        head=head,
+        links=links,
+        body=body,
+        footer=one_line(footer),
     )
+    return xml_text(document)
 
 
 def write_whole(path: Path, content: str) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import shlex
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from functools import cached_property
 from pathlib import Path
@@ -12,19 +12,31 @@ from pathlib import Path
 import numpy as np
 
 from hpsop_core.case.case import Case
+from hpsop_core.charts.hulls import body_plan_chart, sectional_area_chart
+from hpsop_core.charts.looks import Look
+from hpsop_core.charts.plot import Plot
+from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thrust_chart
+from hpsop_core.charts.search import Cloud, Front, Mark, convergence_chart, pareto_chart, window
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.curves import hull_lines, resistance_points, thrust_curves
 from hpsop_core.evaluation.hull_answer import ResistancePoint
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.markup import Markup, fill, joined, one_line
 from hpsop_core.optimization.generation import Generation
-from hpsop_core.quantities import change_text, number_text, objective_title
-from hpsop_core.report import charts
-from hpsop_core.report.charts import COMPROMISE_LOOK, INITIAL_LOOK, Look, Point
-from hpsop_core.report.figures import figure_html
-from hpsop_core.report.html_page import Section, bullets, page, pair, text, write_whole
+from hpsop_core.quantities import change_text, number_text, objective_title, violated
+from hpsop_core.report.html_page import (
+    Section,
+    Words,
+    bullets,
+    chart_html,
+    page,
+    pair,
+    paragraph,
+    write_whole,
+)
+from hpsop_core.report.looks import COMPROMISE_LOOK, INITIAL_LOOK, SHEET, SMALL_SHEET
 from hpsop_core.report.tables import (
-    broken_constraints,
     correlation_table,
     failure_table,
     front_table,
@@ -152,7 +164,7 @@ def report_html(run: RunReader) -> str:
         Section(
             "failures",
             "Failed evaluations",
-            failure_table(failures) if failures else "<p>No evaluation failed.</p>",
+            failure_table(failures) if failures else paragraph("No evaluation failed."),
         ),
     ]
     footer = f"hpsop {__version__}, report of {time.strftime('%Y-%m-%d %H:%M')}"
@@ -181,55 +193,58 @@ def write_report(run: RunReader, target: str | Path, force: bool = False) -> Pat
     return path
 
 
-def _head(data: ReportData, summary: dict[str, object]) -> str:
-    parts = [
-        f'<p class="soft">Case {text(data.case.name)}: {text(data.case.objectives.first.replace("_", " "))} against '
-        f"{text(data.case.objectives.second.replace('_', ' '))}, hull and propeller optimised together. "
-        f"{text(data.case.description)}</p>"
-    ]
+def _head(data: ReportData, summary: dict[str, object]) -> Markup:
+    first, second = (name.replace("_", " ") for name in (data.case.objectives.first, data.case.objectives.second))
+    intro = f"Case {data.case.name}: {first} against {second}, hull and propeller optimised together."
+    parts = [paragraph(one_line(f"{intro} {data.case.description}"), "soft")]
     if summary["state"] != "finished":
-        reason = f" ({text(summary['reason'])})" if summary["reason"] else ""
-        parts.append(
-            f'<p class="banner"><strong>This run is not finished</strong>: {text(summary["state"])}{reason}, '
-            f"generation {summary['generation']} of {summary['generations']}. What stands here is what it has found so "
-            "far.</p>"
+        reason = f" ({summary['reason']})" if summary["reason"] else ""
+        words = fill(
+            "<strong>This run is not finished</strong>: {}, generation {} of {}. What stands here is what it has found "
+            "so far.",
+            one_line(f"{summary['state']}{reason}"),
+            summary["generation"],
+            summary["generations"],
         )
+        parts.append(paragraph(words, "banner"))
     if data.level == 1:
-        parts.append(
-            '<p class="banner">All results are of <strong>level 1</strong>, the fast and rough one; see “How far to '
-            "trust these numbers”.</p>"
+        words = Markup(
+            "All results are of <strong>level 1</strong>, the fast and rough one; see “How far to trust these numbers”."
         )
-    return "".join(parts)
+        parts.append(paragraph(words, "banner"))
+    return joined(parts)
 
 
-def _result(data: ReportData) -> str:
+def _result(data: ReportData) -> Markup:
     if data.initial is None:
-        return "<p>Nothing is evaluated yet, not even the initial design.</p>"
+        return paragraph("Nothing is evaluated yet, not even the initial design.")
     chosen = data.chosen()
     parts = []
     if data.compromise is not None:
         parts.append(_in_short(data, data.initial.evaluation, data.compromise))
     elif data.generations:
-        share = 100.0 * data.generations[-1].feasible_share
-        parts.append(
-            f'<p class="banner"><strong>There is no feasible design on the front</strong> in generation '
-            f"{data.generations[-1].number} ({number_text(share, 0)} % of the population is feasible), so there is no "
-            "compromise either. Widen the bounds, loosen the constraints, or let the search go on.</p>"
+        words = fill(
+            "<strong>There is no feasible design on the front</strong> in generation {} ({} % of the population is "
+            "feasible), so there is no compromise either. Widen the bounds, loosen the constraints, or let the search "
+            "go on.",
+            data.generations[-1].number,
+            number_text(100.0 * data.generations[-1].feasible_share, 0),
         )
+        parts.append(paragraph(words, "banner"))
     else:
-        parts.append('<p class="banner">No generation is finished yet; only the initial design is known.</p>')
-    broken = broken_constraints(data.initial.evaluation)
+        parts.append(paragraph("No generation is finished yet; only the initial design is known.", "banner"))
+    broken = violated(data.initial.evaluation)
     if broken:
-        parts.append("<p>The initial design itself breaks constraints:</p>" + bullets(broken))
+        parts.append(paragraph("The initial design itself breaks constraints:") + bullets(broken))
     warnings = [
-        f"{text(name)}: {text(warning)}"
+        one_line(f"{name}: {warning}")
         for name, record in [("initial", data.initial), *chosen]
         for warning in record.evaluation.warnings
     ]
     parts.append(result_table(data.case, data.initial, chosen))
     if warnings:
-        parts.append("<p>Warnings:</p>" + bullets(list(dict.fromkeys(warnings))))
-    return "".join(parts)
+        parts.append(paragraph("Warnings:") + bullets(list(dict.fromkeys(warnings))))
+    return joined(parts)
 
 
 def _kept(value: float, decimals: int, unit: str = "") -> str:
@@ -237,127 +252,152 @@ def _kept(value: float, decimals: int, unit: str = "") -> str:
     return f"{number_text(value, decimals)} {unit}".strip().replace(" ", "\xa0")
 
 
-def _in_short(data: ReportData, initial: Evaluation, record: DesignRecord) -> str:
+def _in_short(data: ReportData, initial: Evaluation, record: DesignRecord) -> Markup:
     chosen = record.evaluation
-    lines = []
+    lines: list[Words] = []
     for before, after in zip(initial.conditions, chosen.conditions, strict=False):
-        lines.append(
-            f"At Fn {_kept(after.froude_number, 3)} ({_kept(after.speed / 0.514444, 1, 'kn')}): delivered power "
-            f"<strong>{_kept(1e-6 * after.delivered_power, 2, 'MW')}</strong> instead of "
-            f"{_kept(1e-6 * before.delivered_power, 2, 'MW')} "
-            f"({change_text(before.delivered_power, after.delivered_power, 1)}), total resistance "
-            f"{_kept(1e-3 * after.total_resistance, 0, 'kN')} "
-            f"({change_text(before.total_resistance, after.total_resistance, 0)}), open-water efficiency "
-            f"{_kept(after.open_water_efficiency, 3)} instead of {_kept(before.open_water_efficiency, 3)}."
+        line = fill(
+            "At Fn {} ({}): delivered power <strong>{}</strong> instead of {} ({}), total resistance {} ({}), "
+            "open-water efficiency {} instead of {}.",
+            _kept(after.froude_number, 3),
+            _kept(after.speed / 0.514444, 1, "kn"),
+            _kept(1e-6 * after.delivered_power, 2, "MW"),
+            _kept(1e-6 * before.delivered_power, 2, "MW"),
+            change_text(before.delivered_power, after.delivered_power, 1),
+            _kept(1e-3 * after.total_resistance, 0, "kN"),
+            change_text(before.total_resistance, after.total_resistance, 0),
+            _kept(after.open_water_efficiency, 3),
+            _kept(before.open_water_efficiency, 3),
         )
         if abs(after.speed / before.speed - 1.0) > 1e-6:
             speed = _kept(before.speed / 0.514444, 1, "kn")
-            lines[-1] += f" The initial design runs {speed} at that Froude number: the powers are of two speeds."
+            line += f" The initial design runs {speed} at that Froude number: the powers are of two speeds."
+        lines.append(line)
     hull, before_hull = chosen.hull, initial.hull
     if hull is not None and before_hull is not None and hull.booked_volume is not None:
-        lines.append(
-            f"<strong>Its hull really displaces {_kept(hull.displaced_volume, 0, 'm³')}</strong> "
-            f"({change_text(before_hull.displaced_volume, hull.displaced_volume, 0)}); the case only books "
-            f"{_kept(hull.booked_volume, 0, 'm³')} "
-            f"({change_text(before_hull.booked_volume, hull.booked_volume, 0)})."
+        line = fill(
+            "<strong>Its hull really displaces {}</strong> ({}); the case only books {} ({}).",
+            _kept(hull.displaced_volume, 0, "m³"),
+            change_text(before_hull.displaced_volume, hull.displaced_volume, 0),
+            _kept(hull.booked_volume, 0, "m³"),
+            change_text(before_hull.booked_volume, hull.booked_volume, 0),
         )
         if hull.displaced_volume < hull.booked_volume:
-            lines[-1] += " A smaller ship is part of the gain."
-    return (
-        f'<p class="lead">The compromise between both objectives is design {record.id}, one of {len(data.front)} on '
-        f"the front; numbers of level {chosen.level}.</p>{bullets(lines)}"
+            line += " A smaller ship is part of the gain."
+        lines.append(line)
+    first = (
+        f"The compromise between both objectives is design {record.id}, one of {len(data.front)} on the front; numbers "
+        f"of level {chosen.level}."
     )
+    return paragraph(first, "lead") + bullets(lines)
 
 
-def _search(data: ReportData) -> str:
+def _search(data: ReportData) -> Markup:
     if not data.generations:
-        return "<p>No generation is finished yet.</p>"
-    archive, infeasible = _archive(data.run)
-
-    def point(record: DesignRecord | None) -> Point | None:
-        if record is None or not record.evaluation.ok:
-            return None
-        return float(record.evaluation.objectives["f1"] or 0.0), float(record.evaluation.objectives["f2"] or 0.0)
-
-    front = [p for p in (point(record) for record in data.front) if p is not None]
-    names = data.case.objectives
-    titles = (objective_title(names.first, "$f_1$"), objective_title(names.second, "$f_2$"))
-    pareto = charts.pareto_chart(
-        archive, infeasible, front, point(data.initial), point(data.compromise), point(data.knee), titles
-    )
-    total = len(infeasible) + sum(len(points) for points in archive.values())
+        return paragraph("No generation is finished yet.")
+    clouds, total = _clouds(data.run)
     last = data.generations[-1]
     return pair(
-        figure_html(
-            pareto,
+        chart_html(
+            _pareto(data, clouds),
             "pareto",
             f"All {total} designs that could be computed; both objectives are minimised. Each level is normalised by "
-            "the "
-            "initial design at that level, so points of different levels compare only roughly. Designs far off are "
-            "left "
-            "out of the picture.",
+            "the initial design at that level, so points of different levels compare only roughly. Designs far off are "
+            "left out of the picture.",
         ),
-        figure_html(
-            charts.convergence_chart(data.generations),
+        chart_html(
+            convergence_chart(
+                [item.number for item in data.generations],
+                [item.level for item in data.generations],
+                [item.hypervolume for item in data.generations],
+                last.number,
+                SHEET,
+                [item.feasible_share for item in data.generations],
+            ),
             "convergence",
             f"Hypervolume: the area between the front and the point (1.2, 1.2), one series a level; {len(data.front)} "
-            f"designs on the front of generation {last.number}. Below: feasible share of the population.",
+            f"designs on the front of generation {last.number}. Dotted: feasible share of the population.",
         ),
     )
 
 
-def _archive(run: RunReader) -> tuple[dict[int, Array], Array]:
-    """Objectives (n, 2) of feasible designs by level, and of the infeasible ones."""
+def _pareto(data: ReportData, clouds: Sequence[Cloud]) -> Plot:
+    """The Pareto chart of a run as it is now."""
+    front = _objectives(data.front)
+    fronts = [Front(front, "front", 2.6, key="front")] if len(front) else []
+    marks = []
+    for record, shape, size, name in (
+        (data.initial, "square", 4.5, "initial"),
+        (data.compromise, "star", 8.0, "compromise"),
+        (data.knee, "diamond", 5.0, "knee"),
+    ):
+        points = _objectives([record] if record is not None else [])
+        if len(points):
+            marks.append(Mark(float(points[0, 0]), float(points[0, 1]), shape, size, name, name, name))
+    core = np.concatenate([front, *(np.array([[mark.x, mark.y]]) for mark in marks)])
+    feasible = [cloud.points for cloud in clouds if cloud.css != "infeasible"]
+    limits = window(core, np.concatenate(feasible) if feasible else np.zeros((0, 2)))
+    names = data.case.objectives
+    titles = (objective_title(names.first, "f_1"), objective_title(names.second, "f_2"))
+    return pareto_chart(clouds, fronts, marks, limits, titles, SHEET)
+
+
+def _objectives(records: Sequence[DesignRecord]) -> Array:
+    """(n, 2) of those that could be computed."""
+    found = [record.evaluation.objectives for record in records if record.evaluation.ok]
+    return np.array([(f["f1"] or 0.0, f["f2"] or 0.0) for f in found], dtype=float).reshape(-1, 2)
+
+
+def _clouds(run: RunReader) -> tuple[list[Cloud], int]:
+    """Objectives of the infeasible designs, then of the feasible ones by level; and how many there are."""
     points = [point for point in run.archive() if point.objectives is not None]
 
-    def array(chosen: list[Point]) -> Array:
-        return np.array(chosen, dtype=float).reshape(-1, 2)
+    def cloud(chosen: list[tuple[float, float] | None], css: str, key: str) -> Cloud:
+        return Cloud(np.array(chosen, dtype=float).reshape(-1, 2), css, 1.6, key=key)
 
-    levels = sorted({point.level for point in points})
-    feasible = {
-        level: array([p.objectives for p in points if p.feasible and p.level == level and p.objectives])
-        for level in levels
-    }
-    return feasible, array([p.objectives for p in points if not p.feasible and p.objectives])
+    made = [cloud([p.objectives for p in points if not p.feasible], "infeasible", "infeasible")]
+    for level in sorted({point.level for point in points}):
+        own = [p.objectives for p in points if p.feasible and p.level == level]
+        made.append(cloud(own, f"level{level}", f"level {level}, feasible"))
+    return [item for item in made if len(item.points)], len(points)
 
 
-def _or_why(draw: Callable[[], str]) -> str:
+def _or_why(draw: Callable[[], Markup]) -> Markup:
     """A figure, or the sentence that says why there is none."""
     try:
         return draw()
     except SolverFailure as failure:
-        return f"<p>Not drawn: {text(failure)}.</p>"
+        return paragraph(f"Not drawn: {failure}.")
 
 
-def _propulsion(data: ReportData) -> str:
+def _propulsion(data: ReportData) -> Markup:
     drawn = data.drawn()
     with_curves = [(look, evaluation) for look, evaluation in drawn if evaluation.open_water is not None]
     if not with_curves:
-        return "<p>There are no curves: no design has open-water results.</p>"
+        return paragraph("There are no curves: no design has open-water results.")
 
-    def open_water() -> str:
-        return figure_html(
-            charts.open_water_chart(with_curves),
+    def open_water() -> Markup:
+        return chart_html(
+            open_water_chart(with_curves, SHEET),
             "open-water",
             "Open water at full scale: thrust coefficient, ten times the torque coefficient, efficiency. Dots: "
-            "operating "
-            "points, where the thrust coefficient meets what the hull requires.",
+            "operating points, where the thrust coefficient meets what the hull requires.",
         )
 
-    def thrust() -> str:
+    def thrust() -> Markup:
         curves = [
             (look, thrust_curves(data.case, evaluation, points), evaluation)
             for look, points, evaluation in data.resistance
         ]
-        return figure_html(
-            charts.thrust_chart(curves),
+        return chart_html(
+            thrust_chart(curves, SHEET),
             "thrust",
             "Thrust that the hull requires, and what the propeller gives at each condition's rate of rotation.",
         )
 
-    def resistance(which: str, words: str) -> str:
-        return figure_html(
-            charts.resistance_chart(data.resistance, which),
+    def resistance(which: str, words: str) -> Markup:
+        return chart_html(
+            resistance_chart(data.resistance, which, SMALL_SHEET),
             f"resistance-{which}",
             f"{words} over Froude number on each design's own length; dots: the operating conditions.",
         )
@@ -367,47 +407,50 @@ def _propulsion(data: ReportData) -> str:
     )
 
 
-def _form(data: ReportData) -> str:
+def _form(data: ReportData) -> Markup:
     drawn = [(look, evaluation) for look, evaluation in data.drawn() if evaluation.hull is not None]
     if not drawn:
-        return "<p>There is no form to draw.</p>"
+        return paragraph("There is no form to draw.")
 
-    def both() -> str:
+    def both() -> Markup:
         lines = [(look, hull_lines(data.case, evaluation.variables)) for look, evaluation in drawn]
         affine = data.case.hull.form == "affine"
         booked = " Affine form: the booked displacement does not change the sections." if affine else ""
         return pair(
-            figure_html(
-                charts.body_plan_chart(lines),
+            chart_html(
+                body_plan_chart(lines, SMALL_SHEET),
                 "body-plan",
                 "Body plan at equal scales: sections at twentieths of the length, closer at the ends. Horizontal "
-                "lines: "
-                "draft.",
+                "lines: draft.",
             ),
-            figure_html(
-                charts.sectional_area_chart(lines), "sectional-area", f"Immersed sectional area along the ship.{booked}"
+            chart_html(
+                sectional_area_chart(lines, SMALL_SHEET),
+                "sectional-area",
+                f"Immersed sectional area along the ship.{booked}",
             ),
         )
 
     return _or_why(both)
 
 
-def _drivers(data: ReportData) -> str:
+def _drivers(data: ReportData) -> Markup:
     if data.level is None:
-        return "<p>No generation is finished yet.</p>"
+        return paragraph("No generation is finished yet.")
     ids = [p.id for p in data.run.archive(level=data.level) if p.objectives is not None]
     evaluations = [record.evaluation for record in data.run.designs(ids) if record.evaluation.conditions]
-    return correlation_table(data.case, evaluations) + (
-        "<p>+ means that the result grows with the variable, − that it falls; 0 is no monotone relation. A search "
-        "samples "
-        "where it is good, not evenly: read it as a hint, not as a law.</p>"
+    return correlation_table(data.case, evaluations) + paragraph(
+        "+ means that the result grows with the variable, − that it falls; 0 is no monotone relation. A search samples "
+        "where it is good, not evenly: read it as a hint, not as a law."
     )
 
 
-def _front(data: ReportData) -> str:
+def _front(data: ReportData) -> Markup:
     if not data.front:
-        return "<p>The front is empty: no feasible design has been found.</p>"
-    return (
-        f"<p>{len(data.front)} designs, best f<sub>1</sub> first. Take one away with <code>hpsop export "
-        f"{text(shlex.quote(str(data.run.path)))} --design NUMBER --to FOLDER</code>.</p>"
-    ) + front_table(data.case, data.front, data.marks())
+        return paragraph("The front is empty: no feasible design has been found.")
+    words = fill(
+        "{} designs, best f<sub>1</sub> first. Take one away with <code>hpsop export {} --design NUMBER --to "
+        "FOLDER</code>.",
+        len(data.front),
+        one_line(shlex.quote(str(data.run.path))),
+    )
+    return paragraph(words) + front_table(data.case, data.front, data.marks())

@@ -1,19 +1,21 @@
-"""What a case assumes, and how far its numbers can be trusted, in sentences. Markup: everything of a case is "
-"escaped."""
+"""What a case assumes, and how far its numbers can be trusted, in sentences."""
 
 from __future__ import annotations
 
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import VARIABLE_TABLE
+from hpsop_core.markup import Markup, fill, one_line, symbol_html
 from hpsop_core.quantities import OBJECTIVE_TITLES, number_text, variable_quantities
-from hpsop_core.report.html_page import bullets, facts, symbol, table, text
+from hpsop_core.report.html_page import Words, bullets, facts, table, unit_html
 
-_FORM = {
+_FORM: dict[str, Words] = {
     "shift": "Length, breadth and draft scale the parent hull; the displacement asked for is then reached by moving "
     "its sections along the ship (a true change of block coefficient), as far as the parent's form carries it.",
-    "affine": "Length, breadth and draft scale the parent hull and nothing else: the block coefficient of the geometry "
-    "stays the parent's. Displacement and block coefficient are only <em>booked</em>: they enter wake, thrust "
-    "deduction and the displacement constraint, not the hull's shape.",
+    "affine": Markup(
+        "Length, breadth and draft scale the parent hull and nothing else: the block coefficient of the geometry "
+        "stays the parent's. Displacement and block coefficient are only <em>booked</em>: they enter wake, thrust "
+        "deduction and the displacement constraint, not the hull's shape."
+    ),
 }
 _SPEED = {
     "fixed": "Every design runs at the same speeds: the initial design's at the Froude numbers below.",
@@ -35,41 +37,50 @@ _OBJECTIVES = {
 }
 
 
-def objective_lines(case: Case) -> list[str]:
+def objective_lines(case: Case) -> list[Markup]:
     """The two objectives in words."""
     names = (case.objectives.first, case.objectives.second)
+    line = "{}: {} <span class=unit>({})</span>"
     return [
-        f"{symbol(f'f_{number}')}: {text(_OBJECTIVES[name])} <span class=unit>({text(OBJECTIVE_TITLES[name])})</span>"
+        fill(line, symbol_html(f"f_{number}"), _OBJECTIVES[name], OBJECTIVE_TITLES[name])
         for number, name in enumerate(names, start=1)
     ]
 
 
-def assumptions(case: Case) -> str:
+def assumptions(case: Case) -> Markup:
     """Form, speed, conditions, objectives, constraints with their level, calibration and constants."""
     hull, propeller, limits, constants = case.hull, case.propeller, case.constraints, case.constants
     hull_file = hull.offsets or hull.stl
-    own_hull = f"own hull from {text(hull_file)}" if hull_file else f"parent hull {text(hull.parent)}"
+    own_hull = f"own hull from {hull_file}" if hull_file else f"parent hull {hull.parent}"
     own_blades = (
-        f"own propeller from {text(propeller.geometry)}"
-        if propeller.geometry
-        else f"parent propeller {text(propeller.parent)}"
+        f"own propeller from {propeller.geometry}" if propeller.geometry else f"parent propeller {propeller.parent}"
     )
     keller = (
         "at both levels" if limits.g3_level == 1 else "at level 2 only: the search at level 1 does not see cavitation"
     )
-    lines = [
-        f"<strong>Parents</strong>: {own_hull}, {own_blades}.",
-        f"<strong>Hull form</strong> ({text(hull.form)}): {_FORM[hull.form]}",
-        f"<strong>Speed</strong> ({text(case.conditions.speed)}): {_SPEED[case.conditions.speed]}",
-        "<strong>Level 1</strong> (fast): Michell's thin-ship integral and a lifting line. <strong>Level 2</strong> "
-        "(slow, better): Rankine panels on hull and water surface, panels on blades and hub. Friction by ITTC-57 at "
-        "both.",
-        f"<strong>Calibration</strong>: level 1's wave resistance is {_CALIBRATION[constants.wave_calibration]}.",
-        f"<strong>Constraints</strong>: displacement within {number_text(100.0 * limits.displacement_tolerance, 1)} % "
-        f"of the initial design's (g<sub>1</sub>) and D/d from {number_text(limits.diameter_to_draft_lower, 2)} to "
-        f"{number_text(limits.diameter_to_draft_upper, 2)} (g<sub>2</sub>), at both levels; expanded area ratio at "
-        f"least Keller's with K = {number_text(limits.keller_k, 2)} at the first condition (g<sub>3</sub>), {keller}; "
-        "the form carries what is asked and the blades clear the hull, at both levels.",
+    lines: list[Words] = [
+        fill("<strong>Parents</strong>: {}, {}.", one_line(own_hull), one_line(own_blades)),
+        fill("<strong>Hull form</strong> ({}): {}", hull.form, _FORM[hull.form]),
+        fill("<strong>Speed</strong> ({}): {}", case.conditions.speed, _SPEED[case.conditions.speed]),
+        Markup(
+            "<strong>Level 1</strong> (fast): Michell's thin-ship integral and a lifting line. <strong>Level "
+            "2</strong> (slow, better): Rankine panels on hull and water surface, panels on blades and hub. Friction "
+            "by ITTC-57 at both."
+        ),
+        fill(
+            "<strong>Calibration</strong>: level 1's wave resistance is {}.", _CALIBRATION[constants.wave_calibration]
+        ),
+        fill(
+            "<strong>Constraints</strong>: displacement within {} % of the initial design's (g<sub>1</sub>) and D/d "
+            "from {} to {} (g<sub>2</sub>), at both levels; expanded area ratio at least Keller's with K = {} at the "
+            "first condition (g<sub>3</sub>), {}; the form carries what is asked and the blades clear the hull, at "
+            "both levels.",
+            number_text(100.0 * limits.displacement_tolerance, 1),
+            number_text(limits.diameter_to_draft_lower, 2),
+            number_text(limits.diameter_to_draft_upper, 2),
+            number_text(limits.keller_k, 2),
+            keller,
+        ),
     ]
     if hull.form == "affine":
         lines.append(
@@ -86,35 +97,44 @@ def assumptions(case: Case) -> str:
         ],
         caption="Operating conditions",
     )
-    return (
-        f"{bullets(lines)}<h3>Objectives, both "
-        f"minimised</h3>{bullets(objective_lines(case))}{conditions}{_design_space(case)}<h3>Constants</h3>{_constants(case)}"
+    return fill(
+        "{}<h3>Objectives, both minimised</h3>{}{}{}<h3>Constants</h3>{}",
+        bullets(lines),
+        bullets(objective_lines(case)),
+        conditions,
+        _design_space(case),
+        _constants(case),
     )
 
 
-def _design_space(case: Case) -> str:
+def _design_space(case: Case) -> Markup:
     initial = case.initial.variables.as_dict()
-    rows = []
+    rows: list[list[Words]] = []
     for quantity in variable_quantities(case.initial.variables):
         lower, upper = case.bounds.as_dict()[quantity.key]
         shown = VARIABLE_TABLE[quantity.key].shown
         numbers = [number_text(shown(value), quantity.decimals) for value in (initial[quantity.key], lower, upper)]
-        unit = f" <span class=unit>[{text(quantity.unit or '–')}]</span>"
+        name = fill("{} {} {}", quantity.label, symbol_html(quantity.symbol), unit_html(quantity.unit))
         spread = numbers[1:] if lower < upper else [numbers[1], "fixed"]
-        rows.append([f"{text(quantity.label)} {symbol(quantity.symbol)}{unit}", numbers[0], *spread])
+        rows.append([name, numbers[0], *spread])
     return table(["variable", "initial design", "lower bound", "upper bound"], rows, caption="Design space")
 
 
-def _constants(case: Case) -> str:
+def _constants(case: Case) -> Markup:
     c = case.constants
-    wake = (
+    wake: Words = (
         "Taylor's table for single-screw ships, quadratic fit"
         if c.wake_formula == "taylor_quadratic"
-        else "0.5 C<sub>B</sub> − 0.05"
+        else Markup("0.5 C<sub>B</sub> − 0.05")
     )
     return facts(
         [
-            ("water", f"ρ {number_text(c.density, 1)} kg/m³, ν {c.viscosity * 1e6:.4g} · 10<sup>−6</sup> m²/s"),
+            (
+                "water",
+                fill(
+                    "ρ {} kg/m³, ν {:.4g} · 10<sup>−6</sup> m²/s", number_text(c.density, 1), float(c.viscosity * 1e6)
+                ),
+            ),
             ("gravity", f"{c.gravity:.6g} m/s²"),
             (
                 "pressure",
@@ -131,18 +151,24 @@ def _constants(case: Case) -> str:
     )
 
 
-def trust(case: Case, level: int | None) -> str:
+def trust(case: Case, level: int | None) -> Markup:
     """How far the numbers can be trusted; short, and true of this case."""
-    lines = []
+    lines: list[Words] = []
     if level == 1:
         lines.append(
-            "<strong>All results here are of level 1.</strong> Its ranking of similar hulls is useful; its absolute "
-            "wave resistance is only as good as its calibration. Let the run reach level 2 before deciding anything."
+            Markup(
+                "<strong>All results here are of level 1.</strong> Its ranking of similar hulls is useful; its "
+                "absolute wave resistance is only as good as its calibration. Let the run reach level 2 before "
+                "deciding anything."
+            )
         )
     if case.hull.form == "affine":
         lines.append(
-            "<strong>The block coefficient is only booked.</strong> A change of fullness costs no resistance here, as "
-            "it would on a real ship: gains that come with a higher booked block coefficient are not to be believed."
+            Markup(
+                "<strong>The block coefficient is only booked.</strong> A change of fullness costs no resistance here, "
+                "as it would on a real ship: gains that come with a higher booked block coefficient are not to be "
+                "believed."
+            )
         )
     if case.constants.wave_calibration == "none":
         lines.append(
@@ -155,25 +181,37 @@ def trust(case: Case, level: int | None) -> str:
         )
     if case.hull.offsets or case.hull.stl or case.propeller.geometry:
         lines.append(
-            "<strong>Own geometry.</strong> The checks below were made with the DTC and P4119; none was made with the "
-            "hull or propeller of this case."
+            Markup(
+                "<strong>Own geometry.</strong> The checks below were made with the DTC and P4119; none was made with "
+                "the hull or propeller of this case."
+            )
         )
     lines += [
-        "<strong>Resistance, level 2.</strong> On the DTC model the total resistance coefficient is within 2 % of the "
-        "towing tank at Froude numbers 0.174 to 0.218 (wave part at 0.218: 3.8 against 3.4 · 10<sup>−4</sup>). No test "
-        "exists above 0.218: what stands here at 0.27 is extrapolation. Linear potential flow: no viscous stern, no "
-        "breaking waves, hull fixed in its static position.",
-        "<strong>Propeller.</strong> Against the open-water test of P4119, thrust and torque of level 2 are within 4 "
-        "%, between J 0.5 and 0.9. Full scale, other blade counts and other areas rest on theory.",
-        "<strong>Hull and propeller together.</strong> Wake and thrust deduction are regressions on the block "
-        "coefficient, not computed flow: absolute power can be off by more than all differences in these tables. "
-        "Differences between similar designs are worth more than the absolute numbers.",
-        "<strong>Not looked at</strong>: strength of hull and blades, stability, cargo space, seakeeping, manoeuvring, "
-        "vibration, cost. The form is fitted, not faired by hand.",
-        "<strong>Efficiency is not power.</strong> A propeller of better open-water efficiency can need more power "
-        "on a worse hull; read delivered power.",
+        Markup(
+            "<strong>Resistance, level 2.</strong> On the DTC model the total resistance coefficient is within 2 % of "
+            "the towing tank at Froude numbers 0.174 to 0.218 (wave part at 0.218: 3.8 against 3.4 · "
+            "10<sup>−4</sup>). No test exists above 0.218: what stands here at 0.27 is extrapolation. Linear "
+            "potential flow: no viscous stern, no breaking waves, hull fixed in its static position."
+        ),
+        Markup(
+            "<strong>Propeller.</strong> Against the open-water test of P4119, thrust and torque of level 2 are "
+            "within 4 %, between J 0.5 and 0.9. Full scale, other blade counts and other areas rest on theory."
+        ),
+        Markup(
+            "<strong>Hull and propeller together.</strong> Wake and thrust deduction are regressions on the block "
+            "coefficient, not computed flow: absolute power can be off by more than all differences in these tables. "
+            "Differences between similar designs are worth more than the absolute numbers."
+        ),
+        Markup(
+            "<strong>Not looked at</strong>: strength of hull and blades, stability, cargo space, seakeeping, "
+            "manoeuvring, vibration, cost. The form is fitted, not faired by hand."
+        ),
+        Markup(
+            "<strong>Efficiency is not power.</strong> A propeller of better open-water efficiency can need more power "
+            "on a worse hull; read delivered power."
+        ),
     ]
-    return bullets(lines) + (
+    return bullets(lines) + Markup(
         '<p class="soft">Every check with its source: <code>hpsop validate</code>; what each theory neglects stands in '
         "hpsop's documentation.</p>"
     )

@@ -2,5 +2,6 @@
 
 * paper: the printed tables and what follows from them alone
 * comparison: every number of a run beside the paper's, as values
-* page: the comparison as one HTML file; reproduce: the folder with it and its tables
+* figures: the paper's figures with both; page: the comparison as one HTML file
+* reproduce: the folder with it and its tables
 """

@@ -8,12 +8,7 @@ import re
 import numpy as np
 import pytest
 from numpy.typing import NDArray
-from scipy.stats import spearmanr
 
-from explorer.charts.curves import Series, open_water_chart
-from explorer.charts.drivers import rank_correlation
-from explorer.charts.pareto import _count_coincident
-from explorer.charts.plot import Plot, smooth, tick_texts, ticks
 from explorer.scene.camera import PRESETS, preset
 from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, ramp
 from explorer.scene.transfer import transferred
@@ -46,79 +41,19 @@ def initial(case: Case, answers: Answers) -> Evaluation:
 
 
 # ---- charts ----------------------------------------------------------------------------------------------------------
-def test_rank_correlation_is_spearmans():
-    rng = np.random.default_rng(3)
-    first = rng.integers(0, 6, 200).astype(float)  # with many ties, as the number of blades has
-    second = first + rng.normal(0.0, 2.0, 200)
-    second[:5] = np.nan
-    wanted = spearmanr(first[5:], second[5:]).statistic
-    found = rank_correlation(first, second)
-    assert found is not None
-    assert abs(found - wanted) < 1e-12
-    assert rank_correlation(np.ones(50), second[:50]) is None  # a fixed variable drives nothing
-
-
-def _path(svg: str, title: str) -> tuple[Array, Array]:
-    found = re.search(r'<path d="([^"]*)"[^>]*><title>' + re.escape(title) + "</title>", svg)
-    assert found, title
-    points = np.array([[float(b) for b in a.split()] for a in re.split("[ML]", found.group(1)) if a])
-    return points[:, 0], points[:, 1]
-
-
-def test_operating_points_lie_on_the_curves_and_on_the_required_thrust(initial: Evaluation):
-    svg = open_water_chart([(Series("initial", "initial", "dash"), initial)], 480.0, 300.0)
-    curves = {word: _path(svg, f"{word}, initial") for word in ("KT", "10KQ", "η₀")}
-    marks = re.findall(r'<path d="M([\d.]+) ([\d.]+)a([\d.]+) [^"]*"[^>]*><title>initial: J(.) [^<]*, (KT|η₀)', svg)
-    assert len(marks) == 2 * len(initial.conditions)
-    for left, y, radius, which, word in marks:
-        x, y = float(left) + float(radius), float(y)
-        # a pixel is the width of a line
-        assert abs(np.interp(x, *curves[word]) - y) < 1.0
-        if word == "KT":
-            needed = _path(svg, f"required KT, condition {'₁₂'.index(which) + 1}")
-            assert abs(np.interp(x, *needed) - y) < 1.0
-
-
 def test_the_conditions_lie_on_the_resistance_and_thrust_curves(case: Case, answers: Answers):
     variables = dataclasses.replace(case.initial.variables, length_to_breadth=7.6, blade_count=4, pitch_ratio=0.97)
     evaluation = answers.evaluate(case, variables, 1)
     curves = answers.curves(case, evaluation)
     for index, condition in enumerate(evaluation.conditions):
-        at = int(np.argmin(np.abs(curves.froude_number - condition.froude_number)))
-        assert abs(curves.froude_number[at] - condition.froude_number) < 1e-9
-        assert curves.total_resistance[at] == pytest.approx(condition.total_resistance, rel=1e-6)
-        assert curves.wave_resistance[at] == pytest.approx(condition.wave_resistance, rel=1e-6)
-        assert curves.thrust_required[at] == pytest.approx(condition.thrust, rel=1e-6)
-        # the curve of KT has a point every 0.05 of J: straight lines between them cost 0.1 % at most
-        assert curves.thrust_available[index][at] == pytest.approx(condition.thrust, rel=2e-3)
-
-
-def test_smooth_keeps_the_points_and_never_overshoots():
-    x = np.array([0.0, 1.0, 2.0, 3.0, 4.0])
-    y = np.array([0.0, 0.0, 1.0, 1.0, 3.0])
-    fine, values = smooth(x, y)
-    assert np.abs(np.interp(x, fine, values) - y).max() < 1e-12
-    assert values.min() >= 0.0
-    assert np.diff(values).min() >= -1e-12
-
-
-def test_ticks_have_no_more_decimals_than_their_distance():
-    assert tick_texts(ticks((0.16, 0.30), 6)) == ["0.175", "0.200", "0.225", "0.250", "0.275", "0.300"]
-    assert tick_texts(ticks((-3.0, 3.0), 3)) == ["−2", "0", "2"]
-    # the last label ends within the picture
-    svg = Plot(470.0, 200.0, (0.0, 3e5), (0.0, 1.0), "x", "y").svg("c", x_count=3)
-    assert '<text x="469.0" text-anchor="end"' in svg
-
-
-def test_counts_of_coincident_marks_do_not_cover_one_another():
-    plot = Plot(470.0, 300.0, (0.0, 1.0), (0.0, 1.0), "x", "y")
-    crowd = [(0.2 + 0.015 * k, 0.5) for k in range(10) for _ in range(2)]
-    _count_coincident(plot, np.array([*crowd, (0.9, 0.9), (0.9, 0.9), (0.9, 0.9)]))
-    texts = re.findall(r'<text x="([^"]+)"[^>]*>×(\d)', plot.svg("c"))
-    places = [float(x) for x, _ in texts]
-    assert [count for _, count in texts][-1] == "3" and 3 <= len(texts) < 8
-    # 26 pixels hold "×10" with air
-    assert min(np.diff(places)) >= 26.0
+        at = int(np.argmin(np.abs(curves.thrust.froude_number - condition.froude_number)))
+        point = curves.points[at]
+        assert abs(point.froude_number - condition.froude_number) < 1e-9
+        assert point.total_resistance == pytest.approx(condition.total_resistance, rel=1e-6)
+        assert point.wave_resistance == pytest.approx(condition.wave_resistance, rel=1e-6)
+        assert curves.thrust.required[at] == pytest.approx(condition.thrust, rel=1e-6)
+        # a spline through KT every 0.05 of J, against the solver's own polynomial
+        assert curves.thrust.available[index][at] == pytest.approx(condition.thrust, rel=2e-4)
 
 
 def test_numbers_and_changes_for_people():

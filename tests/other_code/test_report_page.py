@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
+import csv
 import dataclasses
+import io
 from pathlib import Path
 
 import numpy as np
@@ -11,11 +13,15 @@ from html_reading import Page, check
 
 from hpsop_core import load_case, optimize
 from hpsop_core.case.case import Case
+from hpsop_core.charts.hulls import body_plan_chart, sectional_area_chart
+from hpsop_core.charts.plot import Plot
+from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thrust_chart
+from hpsop_core.charts.search import convergence_chart
 from hpsop_core.evaluation.curves import hull_lines, resistance_points, thrust_curves
 from hpsop_core.quantities import all_quantities, number_text
-from hpsop_core.report import charts
+from hpsop_core.report.looks import COMPROMISE_LOOK, INITIAL_LOOK, SHEET
 from hpsop_core.report.report import ReportData, report_html
-from hpsop_core.report.tables import failure_table, rank_correlation
+from hpsop_core.report.tables import failure_table
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.reader import RunReader, open_run
 from hpsop_core.runs.records import Failure
@@ -117,29 +123,48 @@ def test_assumptions_and_facts_are_the_cases_and_the_runs(page: Page, run: RunRe
     assert ("No evaluation failed" in page.words["failures"]) == (not run.failures())
 
 
+def drawn(plot: Plot, name: str) -> tuple[list[float], list[float]]:
+    """A chart's series by its name, as its CSV has it."""
+    rows = [row for row in csv.reader(io.StringIO(plot.csv())) if row[0] == name]
+    assert rows, name
+    return [float(row[1]) for row in rows], [float(next(v for v in row[2:] if v)) for row in rows]
+
+
 def test_pareto_and_convergence_show_the_run(run: RunReader) -> None:
-    from hpsop_core.report.report import _archive
+    from hpsop_core.report.report import _clouds, _pareto
 
     data = ReportData.of(run)
-    archive, infeasible = _archive(run)
-    assert set(archive) == {1, 2}
+    clouds, total = _clouds(run)
     computed = [point for point in run.archive() if point.objectives is not None]
-    assert len(infeasible) + sum(len(points) for points in archive.values()) == len(computed)
-    figure = charts.convergence_chart(data.generations)
-    upper, lower = figure.axes
-    drawn = np.concatenate([line.get_ydata() for line in upper.lines])
-    assert drawn == pytest.approx([item.hypervolume for item in data.generations])
-    shares = np.concatenate([line.get_ydata() for line in lower.lines])
-    assert shares == pytest.approx([100.0 * item.feasible_share for item in data.generations])
-    front = [(0.8, 0.95), (0.9, 0.9)]
-    figure = charts.pareto_chart(archive, infeasible, front, (1.0, 1.0), front[0], front[1], ("a [–]", "b [–]"))
-    axes = figure.axes[0]
-    clouds = {cloud.get_label(): np.asarray(cloud.get_offsets()) for cloud in axes.collections}
-    assert clouds["level 2, feasible"] == pytest.approx(archive[2])
-    marks = {line.get_label(): (line.get_xdata()[0], line.get_ydata()[0]) for line in axes.lines}
-    assert marks["initial"] == (1.0, 1.0) and marks["compromise"] == front[0] and marks["knee"] == front[1]
-    for x, y in [*front, (1.0, 1.0)]:
-        assert axes.get_xlim()[0] < x < axes.get_xlim()[1] and axes.get_ylim()[0] < y < axes.get_ylim()[1]
+    assert total == sum(len(cloud.points) for cloud in clouds) == len(computed)
+    generations = data.generations
+    plot = convergence_chart(
+        [item.number for item in generations],
+        [item.level for item in generations],
+        [item.hypervolume for item in generations],
+        len(generations),
+        SHEET,
+        [item.feasible_share for item in generations],
+    )
+    for level in (1, 2):
+        own = [item for item in generations if item.level == level]
+        numbers = [float(item.number) for item in own]
+        assert drawn(plot, f"level {level}") == (numbers, pytest.approx([item.hypervolume for item in own]))
+        shares = [100.0 * item.feasible_share for item in own]
+        assert drawn(plot, f"feasible, level {level}") == (numbers, pytest.approx(shares))
+    plot = _pareto(data, clouds)
+    for level in (1, 2):
+        own = [point.objectives for point in computed if point.feasible and point.level == level]
+        if own:
+            assert np.transpose(drawn(plot, f"level {level}, feasible")) == pytest.approx(np.array(own))
+    front = [[record.evaluation.objectives[name] for name in ("f1", "f2")] for record in run.front()]
+    assert np.transpose(drawn(plot, "front")) == pytest.approx(np.array(front))
+    marks = {"initial": data.initial, "compromise": data.compromise, "knee": data.knee}
+    for name, record in marks.items():
+        (x,), (y,) = drawn(plot, name)
+        assert [x, y] == pytest.approx([record.evaluation.objectives[key] for key in ("f1", "f2")])
+        # what stands out stands within the axes
+        assert plot.x.limits[0] < x < plot.x.limits[1] and plot.y.limits[0] < y < plot.y.limits[1]
 
 
 def test_curves_pass_the_operating_points(run: RunReader) -> None:
@@ -156,16 +181,15 @@ def test_curves_pass_the_operating_points(run: RunReader) -> None:
         assert curves.required[place] == pytest.approx(condition.thrust, rel=1e-9)
         # A spline through KT every 0.05 of J, against the solver's own polynomial.
         assert curves.available[number][place] == pytest.approx(condition.thrust, rel=2e-4)
-    figure = charts.resistance_chart([(charts.COMPROMISE_LOOK, points, evaluation)], "wave")
-    line = figure.axes[0].lines[0]
-    for point in points:
-        place = np.flatnonzero(line.get_xdata() == point.froude_number)
-        assert line.get_ydata()[place[0]] == pytest.approx(1e-6 * point.wave_resistance, rel=1e-9)
-    figure = charts.open_water_chart([(charts.COMPROMISE_LOOK, evaluation)])
-    dots = [(line.get_xdata()[0], line.get_ydata()[0]) for line in figure.axes[0].lines if line.get_marker() == "o"]
-    for condition in evaluation.conditions:
-        assert (condition.advance_coefficient, condition.thrust_coefficient) in dots
-        assert (condition.advance_coefficient, condition.open_water_efficiency) in dots
+    plot = resistance_chart([(COMPROMISE_LOOK, points, evaluation)], "wave", SHEET)
+    froude, force = drawn(plot, "compromise")
+    assert froude == pytest.approx([point.froude_number for point in points])
+    assert force == pytest.approx([1e-6 * point.wave_resistance for point in points])
+    plot = open_water_chart([(COMPROMISE_LOOK, evaluation)], SHEET)
+    for number, condition in enumerate(evaluation.conditions, start=1):
+        for word, value in (("KT", condition.thrust_coefficient), ("η₀", condition.open_water_efficiency)):
+            at, height = drawn(plot, f"{word}, operating point, condition {number}, compromise")
+            assert at == pytest.approx([condition.advance_coefficient]) and height == pytest.approx([value])
 
 
 def test_every_axis_has_its_title(run: RunReader) -> None:
@@ -173,34 +197,26 @@ def test_every_axis_has_its_title(run: RunReader) -> None:
     evaluation = data.initial.evaluation
     points = resistance_points(data.case, evaluation, data.reference(2))
     lines = hull_lines(data.case, evaluation.variables)
-    figures = [
-        charts.open_water_chart([(charts.INITIAL_LOOK, evaluation)]),
-        charts.resistance_chart([(charts.INITIAL_LOOK, points, evaluation)], "total"),
-        charts.thrust_chart([(charts.INITIAL_LOOK, thrust_curves(data.case, evaluation, points), evaluation)]),
-        charts.body_plan_chart([(charts.INITIAL_LOOK, lines)]),
-        charts.sectional_area_chart([(charts.INITIAL_LOOK, lines)]),
-        charts.evolution_chart([("g", "#000000", [(1.0, 1.0)])], ("a [–]", "b [–]"), []),
-    ]
-    for figure in figures:
-        for axes in figure.axes:
-            assert "[" in axes.get_xlabel() and "[" in axes.get_ylabel()
+    area = sectional_area_chart([(INITIAL_LOOK, lines)], SHEET)
+    for plot in (
+        open_water_chart([(INITIAL_LOOK, evaluation)], SHEET),
+        resistance_chart([(INITIAL_LOOK, points, evaluation)], "total", SHEET),
+        thrust_chart([(INITIAL_LOOK, thrust_curves(data.case, evaluation, points), evaluation)], SHEET),
+        body_plan_chart([(INITIAL_LOOK, lines)], SHEET),
+        area,
+    ):
+        assert "[" in plot.x.title and "[" in plot.y.title
     # The area under the drawn sectional-area curve is the displacement.
-    line = figures[4].axes[0].lines[0]
-    volume = float(np.trapezoid(line.get_ydata(), line.get_xdata() * evaluation.hull.length))
+    station, immersed = drawn(area, "initial")
+    volume = float(np.trapezoid(immersed, np.array(station) * evaluation.hull.length))
     assert volume == pytest.approx(evaluation.hull.displaced_volume, rel=2e-3)
 
 
-def test_rank_correlation_against_scipy() -> None:
-    from scipy.stats import spearmanr
-
-    rng = np.random.default_rng(3)
-    a = rng.integers(0, 5, 60).astype(float)
-    b = a + rng.normal(0.0, 2.0, 60)
-    assert rank_correlation(a, b) == pytest.approx(spearmanr(a, b).statistic, abs=1e-12)
-    b[7] = np.nan
-    keep = np.isfinite(b)
-    assert rank_correlation(a, b) == pytest.approx(spearmanr(a[keep], b[keep]).statistic, abs=1e-12)
-    assert rank_correlation(a, np.ones(60)) is None and rank_correlation(a[:5], b[:5]) is None
+def test_the_body_plan_has_equal_scales(run: RunReader) -> None:
+    data = ReportData.of(run)
+    plot = body_plan_chart([(INITIAL_LOOK, hull_lines(data.case, data.initial.evaluation.variables))], SHEET)
+    across = float(plot.px(10.0) - plot.px(0.0))
+    assert float(plot.py(0.0) - plot.py(10.0)) == pytest.approx(across, rel=1e-9)
 
 
 def test_without_a_feasible_design_it_says_so(tmp_path: Path) -> None:
@@ -244,7 +260,7 @@ def test_failures_are_listed_with_their_reasons(run: RunReader) -> None:
     variables = run.case.initial.variables
     failures = [Failure(n, 2, 4, "rankine", "<b>singular</b> & more", variables, 0.1) for n in range(60)]
     page = Page()
-    page.feed("<section id=x>" + failure_table(failures) + "</section>")
+    page.feed(f"<section id=x>{failure_table(failures)}</section>")
     assert page.tables["x"][0][1] == ["rankine", "2", "60"]
     assert page.tables["x"][1][1][4] == "<b>singular</b> & more" and len(page.tables["x"][1]) == 41
     assert "The first 40 of 60" in page.words["x"]

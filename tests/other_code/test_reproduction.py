@@ -10,8 +10,7 @@ from html_reading import Page, check
 
 from hpsop_core import load_case
 from hpsop_core.cli.main import main
-from hpsop_core.reproduction import page as reproduction_page
-from hpsop_core.reproduction import paper
+from hpsop_core.reproduction import figures, paper
 from hpsop_core.reproduction.comparison import Reproduction
 from hpsop_core.reproduction.reproduce import write_reproduction
 from hpsop_core.runs.reader import RunReader, open_run
@@ -105,28 +104,27 @@ def test_the_printed_resistance_lies_between_our_levels(folder: Path) -> None:
 def test_the_papers_points_are_in_the_figures(run: RunReader, monkeypatch: pytest.MonkeyPatch) -> None:
     drawn = {}
 
-    def keep(figure, name: str, caption: str) -> str:
-        drawn[name] = figure
+    def keep(plot, name: str, caption: str) -> str:
+        drawn[name] = plot
         return ""
 
-    monkeypatch.setattr(reproduction_page, "figure_html", keep)
+    monkeypatch.setattr(figures, "chart_html", keep)
     data = Reproduction.of(run)
-    for make in (reproduction_page._figure5, reproduction_page._figures67, reproduction_page._figure8,
-                 reproduction_page._figure9):  # fmt: skip
+    for make in (figures.figure5, figures.figures67, figures.figure8, figures.figure9):
         make(data)
-    lines = {
-        name: {line.get_label(): (list(line.get_xdata()), list(line.get_ydata())) for line in figure.axes[0].lines}
-        for name, figure in drawn.items()
-    }
-    assert lines["figure-5"]["paper, Table 3"] == (
+    series = {name: {item.name: (list(item.x), list(item.y)) for item in plot.series} for name, plot in drawn.items()}
+    assert series["figure-5"]["paper, Table 3"] == (
         [1.0, 0.77, 0.67, 0.68, 0.74, 0.70], [1.0, 0.910, 0.933, 0.922, 0.915, 0.916]
     )  # fmt: skip
-    assert lines["figure-7"]["paper IS, Table 4"][1] == pytest.approx([5.764439, 13.273775])
-    assert lines["figure-8"]["paper OP3, Table 4"][0][:2] == [0.774, 0.684]
-    assert lines["figure-9"]["paper IS: $T$"][1] == pytest.approx([4.22723, 9.71785], rel=1e-5)
-    for figure in drawn.values():
-        for axes in figure.axes:
-            assert "[" in axes.get_xlabel() and "[" in axes.get_ylabel()
+    assert series["figure-7"]["paper IS, Table 4"][1] == pytest.approx([5.764439, 13.273775])
+    assert series["figure-8"]["paper OP3, Table 4"][0][:2] == [0.774, 0.684]
+    assert series["figure-9"]["paper IS: T"][1] == pytest.approx([4.22723, 9.71785], rel=1e-5)
+    for plot in drawn.values():
+        assert "[" in plot.x.title and "[" in plot.y.title
+        # none of the published points lies outside the chart
+        for item in plot.series:
+            if item.name.startswith("paper"):
+                assert (item.x <= plot.x.limits[1]).all() and (item.y <= plot.y.limits[1]).all()
 
 
 def test_called_again_it_goes_on_and_replaces_its_files_only(

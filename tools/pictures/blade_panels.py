@@ -20,12 +20,12 @@ from hpsop_core.hydro.blade_panels.settings import BladePanelSettings, HubSettin
 from hpsop_core.hydro.blade_panels.solver import BladePanelResult, forces_of, solve
 from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
-from hpsop_core.report.figures import pyplot
 from hpsop_core.typing_aliases import Array
 from hpsop_core.validation.propeller_level1 import reference_rows
 from hpsop_core.validation.propeller_level2 import fine_rigid_wake
 from hpsop_core.validation.propeller_studies import GRIDS, MODEL_SCALE, experiment, model_propeller
 from tools.pictures.command import write_pictures
+from tools.pictures.plotting import pyplot
 
 _DPI = 100
 _BLUE, _RED, _GREEN, _BRONZE, _GREY = "#1f4e9c", "#b03020", "#207040", "#d9b36a", "#9aa0a6"

@@ -14,7 +14,7 @@ import numpy as np
 
 from hpsop_core.geometry.hull.hull import Hull, ParentHull, load_parent_hull
 from hpsop_core.geometry.hull.mesh import hull_view_parts
-from hpsop_core.report.figures import pyplot
+from tools.pictures.plotting import pyplot
 from tools.pictures.shading import ShadedPart, render
 
 BLOCK_COEFFICIENTS = (0.60, 0.63, 0.66, 0.69, 0.72, 0.75)

@@ -20,10 +20,10 @@ from hpsop_core.geometry.propeller.sections import cosine_chord_fractions
 from hpsop_core.geometry.propeller.surface import section_points
 from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
-from hpsop_core.report.figures import pyplot
 from hpsop_core.typing_aliases import Array
 from hpsop_core.validation.propeller_level1 import MODEL_DIAMETER, reference_rows
 from tools.pictures.command import write_pictures
+from tools.pictures.plotting import pyplot
 from tools.pictures.shading import ShadedPart, render
 
 _BRONZE = (0.83, 0.62, 0.28)

@@ -16,10 +16,10 @@ from hpsop_core.geometry.hull.panels import block_points
 from hpsop_core.hydro.michell import wave_coefficients
 from hpsop_core.hydro.rankine.settings import RankineSettings
 from hpsop_core.hydro.rankine.solver import RankineFields, solve, solve_panels
-from hpsop_core.report.figures import pyplot
 from hpsop_core.typing_aliases import Array
 from hpsop_core.validation import rankine_studies as studies
 from hpsop_core.validation.rankine import tank_points
+from tools.pictures.plotting import pyplot
 
 _DPI = 100
 _FROUDE_COLOURS = ("#1f5fa8", "#c0392b")

@@ -6,16 +6,15 @@ from collections.abc import Mapping
 
 import viser
 
-from explorer.charts.pareto import ParetoMark, ParetoOptions, automatic_limits, pareto_background, pareto_chart
-from explorer.charts.plot import Plot, legend
+from explorer.charts.pareto import ParetoOptions, automatic_limits, pareto_background, pareto_chart
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Limits, Session
 from explorer.views.chips import box
-from hpsop_core.markup import Markup
+from hpsop_core.charts.frame import Key
+from hpsop_core.charts.plot import Plot
+from hpsop_core.charts.search import Mark
 from hpsop_core.quantities import objective_title
-
-_FRAME = (68.0, 42.0)  # px of the margins, both sides together
 
 
 class ParetoChart:
@@ -45,7 +44,10 @@ class ParetoChart:
     @property
     def plot_size(self) -> tuple[float, float]:
         """Of the plot area, px."""
-        return self._session.chart_width - _FRAME[0], self._height() - _FRAME[1]
+        if self._background is None:
+            return self._session.chart_width, self._height()
+        area = self._background[1].area
+        return area.width, area.height
 
     def draw(self) -> None:
         """Draw everything again."""
@@ -57,27 +59,26 @@ class ParetoChart:
         key = (picture, options, titles, session.chart_width, self._height())
         if self._background is None or not _same(self._background[0], key):
             self._background = (key, pareto_background(picture, options, titles, session.chart_width, self._height()))
-        svg = pareto_chart(picture, self._background[1], self._marks())
-        keys = [("circle", "level1", "level 1 front")]
+        keys = [Key("circle", "level1", "level 1 front")]
         if picture.last_of_level(2) is not None:
-            keys.append(("circle", "level2", "level 2 front"))
+            keys.append(Key("circle", "level2", "level 2 front"))
         if session.archive:
-            keys.append(("circle", "archive", "archive"))
+            keys.append(Key("dots", "archive", "archive"))
         if session.infeasible:
-            keys.append(("circle", "infeasible", "infeasible"))
-        keys.append(("square", "initial", "initial"))
+            keys.append(Key("dots", "infeasible", "infeasible"))
+        keys.append(Key("square", "initial", "initial"))
         if picture.compromise is not None:
-            keys += [("star", "compromise", "compromise"), ("diamond", "knee", "knee")]
+            keys += [Key("star", "compromise", "compromise"), Key("diamond", "knee", "knee")]
         if bool(picture.by_hand.any()):
-            keys.append(("square", "hand", "by hand"))
+            keys.append(Key("square", "hand", "by hand"))
         if session.pins:
-            keys.append(("triangle", "pin1", "pinned"))
-        self._html.show(box(Markup(svg + legend(keys))))
+            keys.append(Key("triangle", "pin1", "pinned"))
+        self._html.show(box(pareto_chart(picture, self._background[1], self._marks(), keys)))
 
     def _height(self) -> float:
         return min(max(0.5 * self._session.size[1] - 178.0, 190.0), 400.0)
 
-    def _marks(self) -> list[ParetoMark]:
+    def _marks(self) -> list[Mark]:
         session = self._session
         initial = self._designs.first().evaluation.objectives
         marks = [_mark(initial, "square", 4.5, "initial", "initial design")]
@@ -95,8 +96,8 @@ def _same(first: tuple[object, ...], second: tuple[object, ...]) -> bool:
     return first[0] is second[0] and first[1:] == second[1:]
 
 
-def _mark(objectives: Mapping[str, float | None], shape: str, size: float, css: str, title: str) -> ParetoMark | None:
+def _mark(objectives: Mapping[str, float | None], shape: str, size: float, css: str, title: str) -> Mark | None:
     f1, f2 = objectives.get("f1"), objectives.get("f2")
     if f1 is None or f2 is None:
         return None
-    return ParetoMark(float(f1), float(f2), shape, size, css, title)
+    return Mark(float(f1), float(f2), shape, size, css, title)

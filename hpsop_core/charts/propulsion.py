@@ -1,0 +1,166 @@
+"""Charts of hull and propeller together: open water over J, resistance and thrust over Froude number."""
+
+from __future__ import annotations
+
+from collections.abc import Sequence
+
+import numpy as np
+
+from hpsop_core.charts.axis import Axis, Limits, padded
+from hpsop_core.charts.looks import Look, Published, Sheet, draw_published
+from hpsop_core.charts.plot import Plot
+from hpsop_core.evaluation.curves import ThrustCurves, smooth_open_water
+from hpsop_core.evaluation.hull_answer import ResistancePoint
+from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.markup import fill
+from hpsop_core.typing_aliases import Array
+
+_FROUDE_RANGE = (0.16, 0.3)
+_HIGHEST = 1.4
+_SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
+Curves = tuple[Array, Array, Array, Array]
+WAITING = "computing …"
+
+
+def open_water_chart(
+    designs: Sequence[tuple[Look, Evaluation]],
+    sheet: Sheet,
+    published: Sequence[Published] = (),
+    required: bool = True,
+) -> Plot:
+    """KT, 10KQ and efficiency against J, the required KT of each condition, and the operating points.
+
+    Args:
+        designs: what is compared; the last is the main one, whose conditions are named.
+        sheet: size and style.
+        published: points to draw in.
+        required: whether the conditions are drawn.
+    """
+    shown = [(look, smooth_open_water(item.open_water), item) for look, item in designs if item.open_water is not None]
+    longest = max((float(curves[0][-1]) for _, curves, _ in shown), default=1.2)
+    tops = [float(np.nanmax(values)) for _, (_, _, kq, eta), _ in shown for values in (kq, eta)]
+    top = min(1.05 * max([0.8, *tops]), _HIGHEST)
+    x = Axis("advance coefficient J [–]", (0.0, longest))
+    y = Axis("K_T, 10K_Q, η₀ [–]", (0.0, top), 5)
+    plot = Plot(sheet.width, sheet.height, x, y, margins=(48, 12, 8, 34), style=sheet.style)
+    if not shown:
+        plot.message("no open-water curves for this design")
+    for index, (look, curves, evaluation) in enumerate(shown):
+        j = curves[0]
+        for number, (values, word) in enumerate(zip(curves[1:], ("KT", "10KQ", "η₀"), strict=True)):
+            plot.line(j, values, look.css, name=f"{word}, {look.name}", key="" if number else look.name)
+        if required:
+            _conditions(plot, look, evaluation, j, index == len(shown) - 1)
+    if required and shown:
+        parabola = "required soft" if len(shown) > 1 else f"required {shown[0][0].role}"
+        plot.line([], [], parabola, key="required K_T, a condition each")
+    _name_curves(plot, [curves for _, curves, _ in shown])
+    draw_published(plot, published)
+    return plot
+
+
+def _conditions(plot: Plot, look: Look, evaluation: Evaluation, j: Array, main: bool) -> None:
+    places = [condition.advance_coefficient for condition in evaluation.conditions]
+    for number, condition in enumerate(evaluation.conditions, start=1):
+        at, thrust, efficiency = places[number - 1], condition.thrust_coefficient, condition.open_water_efficiency
+        if not at > 0.0:
+            continue
+        needed = thrust / at**2 * j**2
+        if main or look.role == "initial":
+            visible = np.where(needed <= 1.6 * thrust, needed, np.nan)
+            plot.line(j, visible, f"required {look.role}", name=f"required KT, condition {number}, {look.name}")
+        label = f"{look.name}: J{str(number).translate(_SUBSCRIPTS)} {at:.4f}"
+        series = f"operating point, condition {number}, {look.name}"
+        plot.mark(at, thrust, "circle", 3.6, look.role, title=f"{label}, KT {thrust:.4f}", name=f"KT, {series}")
+        plot.mark(at, efficiency, "circle", 3.0, look.role, title=f"{label}, η₀ {efficiency:.4f}", name=f"η₀, {series}")
+        if main:
+            # two conditions may nearly coincide: their names then stand on either side
+            right = all(at >= other for other in places)
+            plot.text(at, 0.0, f"J_{number}", "soft", "start" if right else "end", dx=3 if right else -3, dy=-5)
+            a, b, ground = (float(v) for v in (plot.px(at), plot.py(efficiency), plot.py(0.0)))
+            plot.raw(fill('<path d="M{:.1f} {:.1f}V{:.1f}" class="guide"/>', a, b, ground))
+
+
+def _name_curves(plot: Plot, drawn: Sequence[Curves]) -> None:
+    """KT, 10KQ and eta0 where the three are apart: at low J, at the peak, and where the thrust has nearly gone."""
+    if not drawn:
+        return
+    j, _, _, eta = drawn[-1]
+    late, peak = int(0.76 * len(j)), int(np.nanargmax(eta))
+    for place, height, word, dx, dy in (
+        (1, max(float(kq[1]) for _, _, kq, _ in drawn), "10K_Q", 5, -5),
+        (peak, max(float(np.nanmax(eta)) for *_, eta in drawn), "η₀", -4, -5),
+        (late, min(float(np.nan_to_num(kt[late])) for _, kt, _, _ in drawn), "K_T", -20, 12),
+    ):
+        plot.text(float(j[place]), height, word, dx=dx, dy=dy)
+
+
+def resistance_chart(
+    designs: Sequence[tuple[Look, Sequence[ResistancePoint], Evaluation]],
+    which: str,
+    sheet: Sheet,
+    published: Sequence[Published] = (),
+) -> Plot:
+    """Wave ("wave") or total ("total") resistance against Froude number, the conditions marked."""
+    name = f"{which}_resistance"
+    curves = [
+        (
+            np.array([point.froude_number for point in points]),
+            np.array([1e-6 * getattr(point, name) for point in points]),
+        )
+        for _, points, _ in designs
+    ]
+    top = padded([*(v for _, force in curves for v in force), *(v for item in published for v in item.y), 0.0])[1]
+    word = "wave resistance R_W [MN]" if which == "wave" else "total resistance R_T [MN]"
+    x = Axis("Froude number Fn [–]", _froude_limits([froude for froude, _ in curves]))
+    plot = Plot(sheet.width, sheet.height, x, Axis(word, (0.0, top), 5), margins=(48, 12, 8, 34), style=sheet.style)
+    if not designs:
+        plot.message(WAITING)
+    for (look, _, evaluation), (froude, force) in zip(designs, curves, strict=True):
+        plot.line(froude, force, look.css, name=look.name, key=look.name, curved=True)
+        for number, condition in enumerate(evaluation.conditions, start=1):
+            value = getattr(condition, name)
+            title = f"{look.name}, condition {number}: {1e-3 * value:,.0f} kN"
+            plot.mark(condition.froude_number, 1e-6 * value, "circle", 3.6, look.role, title=title)
+    draw_published(plot, published)
+    return plot
+
+
+def thrust_chart(
+    designs: Sequence[tuple[Look, ThrustCurves, Evaluation]], sheet: Sheet, published: Sequence[Published] = ()
+) -> Plot:
+    """Thrust required by the hull, and given by the propeller at each condition's rate of rotation, against Fn."""
+    # high enough for the operating points with air above; the steep ends of the curves may leave the chart
+    points = [1e-6 * condition.thrust for _, _, evaluation in designs for condition in evaluation.conditions]
+    top = 1.5 * max([*points, *(value for item in published for value in item.y)], default=1.0)
+    x = Axis("Froude number Fn [–]", _froude_limits([curves.froude_number for _, curves, _ in designs]))
+    y = Axis("thrust T [MN]", (0.0, top), 5)
+    plot = Plot(sheet.width, sheet.height, x, y, margins=(48, 12, 8, 34), style=sheet.style)
+    if not designs:
+        plot.message(WAITING)
+    for index, (look, curves, evaluation) in enumerate(designs):
+        froude, main = curves.froude_number, index == len(designs) - 1
+        words = f"required, {look.name}"
+        plot.line(froude, 1e-6 * curves.required, look.css, name=words, key=words, curved=True)
+        # the published thrust of a run may have fewer conditions than its curves
+        for number, (condition, available) in enumerate(zip(evaluation.conditions, curves.available, strict=False), 1):
+            rate = f"{condition.rotation_rate_rpm:.1f} rpm"
+            force = 1e-6 * available
+            name = f"available at {rate}, {look.name}"
+            plot.line(froude, force, f"{look.role} dot thin", name=name, curved=True)
+            title = f"{look.name}, condition {number}: T {1e-3 * condition.thrust:,.0f} kN at {rate}"
+            plot.mark(condition.froude_number, 1e-6 * condition.thrust, "circle", 3.6, look.role, title=title)
+            within = np.flatnonzero(np.isfinite(force) & (force < 0.93 * top))
+            if (main or len(designs) <= 2) and within.size:
+                # below its falling end it crosses nothing of its own
+                last = within[-1]
+                at = (float(froude[last]), float(force[last]))
+                plot.text(*at, f"n_{number} = {rate}", look.role, "end", dy=1.3 * sheet.style.note)
+    if designs:
+        plot.line([], [], "soft dot thin", key="available at each condition's n")
+    draw_published(plot, published)
+    return plot
+
+
+def _froude_limits(found: Sequence[Array]) -> Limits:
+    return padded(np.concatenate(found), 0.0) if found else _FROUDE_RANGE
