@@ -94,7 +94,7 @@ def around_zero(values: NDArray[np.float64], weights: NDArray[np.float64]) -> Li
     return min(low, -0.01), 0.0, max(high, 0.01)
 
 
-def _legend(title: Markup, limits: Limits, decimals: int, stops: Stops, note: str) -> Markup:
+def _legend(title: Markup, limits: Limits, decimals: int, stops: Stops, note: Markup) -> Markup:
     colours = ", ".join(f"rgb({r},{g},{b})" for r, g, b in stops)
     return fill(
         '<div class="scale"><div class="scale-title">{}</div>'
@@ -107,11 +107,11 @@ def _legend(title: Markup, limits: Limits, decimals: int, stops: Stops, note: st
     )
 
 
-def sea_legend(reach: float, note: str) -> Markup:
+def sea_legend(reach: float, note: Markup) -> Markup:
     """The legend of wave elevations from -reach to reach, m."""
     return _legend(Markup("wave elevation ζ [m]"), (-reach, 0.0, reach), 2 if reach < 1.0 else 1, SEA, note)
 
 
-def pressure_legend(title: Markup, limits: Limits, note: str) -> Markup:
+def pressure_legend(title: Markup, limits: Limits, note: Markup) -> Markup:
     """The legend of a pressure coefficient."""
     return _legend(title, limits, 2, PRESSURE, note)

@@ -10,6 +10,7 @@ from numpy.typing import NDArray
 from explorer.scene.geometry import SceneGeometry
 from explorer.scene.transfer import transferred
 from hpsop_core.evaluation.fields import PressureField
+from hpsop_core.markup import Markup, fill
 
 Array = NDArray[np.float64]
 Faces = NDArray[np.int64]
@@ -28,7 +29,7 @@ class PressureMap:
     vertices: Array
     faces: Faces
     coefficient: Array
-    note: str
+    note: Markup
 
     def areas(self) -> Array:
         """(n,) a third of the triangles around each vertex, m2."""
@@ -42,7 +43,7 @@ def hull_map(field: PressureField, geometry: SceneGeometry) -> PressureMap:
     """The hull's pressure on its underwater mesh."""
     vertices, faces = geometry.underwater
     coefficient = transferred(field.points, *_nodal(field, field.quads, field.uniform_coefficient), vertices, faces)
-    note = f"level 2, Fn {field.froude_number:.3f}, on ½ρV², no hydrostatic part"
+    note = fill("level 2, Fn {:.3f}, on ½ρV², no hydrostatic part", field.froude_number)
     return PressureMap(vertices, faces, coefficient, note)
 
 
@@ -54,7 +55,7 @@ def blade_map(field: PressureField, geometry: SceneGeometry) -> PressureMap:
     coefficient = transferred(
         points, *_nodal(field, field.quads[on_blade], field.uniform_coefficient[on_blade]), vertices, faces
     )
-    note = f"level 2, J {field.advance_coefficient:.3f}, on ½ρ(V<sub>A</sub>² + (0.7πnD)²)"
+    note = fill("level 2, J {:.3f}, on ½ρ(V<sub>A</sub>² + (0.7πnD)²)", field.advance_coefficient)
     return PressureMap(vertices, faces, coefficient, note)
 
 

@@ -9,6 +9,7 @@ from numpy.typing import NDArray
 from scipy.interpolate import RectBivariateSpline
 
 from hpsop_core.evaluation.fields import WaveField
+from hpsop_core.markup import Markup, fill
 
 Array = NDArray[np.float64]
 # a shown sea ends softly over this part of its width and of its length
@@ -25,14 +26,14 @@ class WaveSurface:
         vertices: (n, 3) m in ship axes at true scale; faces: (m, 3).
         elevation: (n,) m.
         opacity: (n,) from 1 to 0 at the rim.
-        note: what it is, for the legend (HTML).
+        note: what it is, for the legend (markup).
     """
 
     vertices: Array
     faces: NDArray[np.int64]
     elevation: Array
     opacity: Array
-    note: str
+    note: Markup
 
 
 def wave_surface(field: WaveField) -> WaveSurface:
@@ -56,13 +57,13 @@ def wave_surface(field: WaveField) -> WaveSurface:
     )
 
 
-def _note(field: WaveField) -> str:
+def _note(field: WaveField) -> Markup:
     if field.spectrum is None:
-        return f"level 2, Rankine panels, Fn {field.froude_number:.3f}; true scale"
+        return fill("level 2, Rankine panels, Fn {:.3f}; true scale", field.froude_number)
     scaled = abs(field.wave_calibration - 1.0) > 1e-9
     heights = f", heights × √{field.wave_calibration:.3g}" if scaled else ""
     share = f"{100.0 * field.spectrum.drawn_share:.0f} %"
-    return f"level 1, Kelvin pattern{heights}; true scale<br>the waves drawn carry {share} of R<sub>W</sub>"
+    return fill("level 1, Kelvin pattern{}; true scale<br>the waves drawn carry {} of R<sub>W</sub>", heights, share)
 
 
 def _panel_sheet(field: WaveField) -> tuple[Array, Array, Array]:
