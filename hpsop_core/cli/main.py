@@ -15,7 +15,7 @@ USAGE_ERROR = 2
 
 
 class _Parser(argparse.ArgumentParser):
-    """An argument parser whose errors are one line, as the contract asks."""
+    """An argument parser whose errors are one line, with the help that leads on."""
 
     def error(self, message: str) -> NoReturn:
         print(f"{self.prog}: {message}; see '{self.prog} --help'", file=sys.stderr)

@@ -1,4 +1,4 @@
-"""The examples and the README's commands do what they say, run as a reader runs them (with quick settings)."""
+"""Examples, tools and the README's commands do what they say, run as a reader runs them (with quick settings)."""
 
 from __future__ import annotations
 
@@ -102,3 +102,20 @@ def test_python_of_the_readme(tmp_path: Path) -> None:
     for block in blocks:
         (tmp_path / "block.py").write_text(block, encoding="utf-8")
         assert run(["block.py"], tmp_path)
+
+
+def test_every_tool_is_run_as_a_module() -> None:
+    tools = [path for path in (ROOT / "tools").rglob("*.py") if "__main__" in path.read_text(encoding="utf-8")]
+    assert len(tools) >= 5
+    for path in tools:
+        name = ".".join(path.relative_to(ROOT).with_suffix("").parts)
+        done = subprocess.run([sys.executable, "-m", name, "--help"], cwd=ROOT, capture_output=True, text=True)
+        assert done.returncode == 0 and done.stdout, (name, done.stderr)
+
+
+def test_files_that_the_docs_name_are_there() -> None:
+    folders = r"(?:hpsop_core|explorer|tools|tests|docs|assets|examples|benchmarks)/[\w./-]*\w"
+    pages = [*ROOT.glob("*.md"), *(ROOT / "docs").glob("*.md")]
+    named = [(page.name, name) for page in pages for name in re.findall(folders, page.read_text(encoding="utf-8"))]
+    assert len(named) > 50
+    assert [pair for pair in named if not (ROOT / pair[1]).exists()] == []

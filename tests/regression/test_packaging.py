@@ -46,27 +46,6 @@ def test_every_need_has_a_lower_bound_that_the_oldest_versions_are() -> None:
         assert name in newest and numbers(newest[name]) >= numbers(lower), name
 
 
-def test_every_package_of_the_tree_is_installed_and_nothing_else() -> None:
-    listed = set(PROJECT["tool"]["setuptools"]["packages"]) - {"hpsop_assets"}
-    there = {
-        ".".join(path.parent.relative_to(ROOT).parts)
-        for top in ("hpsop_core", "explorer")
-        for path in (ROOT / top).rglob("__init__.py")
-    }
-    assert listed == there
-    folders = {path.parent for top in ("hpsop_core", "explorer") for path in (ROOT / top).rglob("*.py")}
-    assert {folder for folder in folders if not (folder / "__init__.py").exists()} == set()
-
-
-def test_tools_are_run_as_modules() -> None:
-    # What is not installed must not be imported by what is.
-    for top in ("hpsop_core", "explorer"):
-        for path in (ROOT / top).rglob("*.py"):
-            assert not re.search(
-                r"^\s*(from|import) (tools|tests|benchmarks|examples)\b", path.read_text("utf-8"), re.M
-            )
-
-
 def test_contents_of_the_wheel() -> None:
     distribution = importlib.metadata.distribution("hpsop")
     record = distribution.read_text("direct_url.json")
