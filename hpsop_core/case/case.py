@@ -113,6 +113,12 @@ class Case:
 def load_case(name_or_path: str | Path) -> Case:
     """A shipped case by its name, or a case from a TOML file.
 
+    Args:
+        name_or_path: "dtc-p4119", "dtc-p4119-power", "dtc-p4119-paper", or a file (docs/case.md).
+
+    Returns:
+        The case, frozen; ``replaced("section", field=value)`` gives a changed one, checked in the same way.
+
     Raises:
         InputError: no such case or file, no TOML, an unknown field or a refused value; one line that says where.
     """

@@ -4,6 +4,22 @@
 * surfaces, rhino: NURBS, and Rhino's file of them
 * meshes: STL and GLB; lines: DXF
 * tables, offsets: CSV
+
+``hpsop_core.export(run, design, folder, formats=None, force=False)`` writes a design's files, all of them or none.
+
+Args:
+    run: the run that has it (``open_run``).
+    design: its id, "initial", "compromise" or "knee".
+    folder: made if it is not there.
+    formats: any of ``design_files.FORMATS``; all of them by default.
+    force: write into a folder that holds something already; files of the same name are replaced, others stay.
+
+Returns:
+    The files written; metres and SI units, ship axes (docs/export.md).
+
+Raises:
+    InputError: no such design or format, a failed design, or a folder that cannot be used.
+    SolverFailure: the form or its resistance curve cannot be computed.
 """
 
 from __future__ import annotations
@@ -27,7 +43,7 @@ class _Export(ModuleType):
         formats: Sequence[str] | None = None,
         force: bool = False,
     ) -> tuple[Path, ...]:
-        """``design_files.export_design``."""
+        """See the module."""
         from hpsop_core.export.design_files import export_design
 
         return export_design(run, design, folder, formats, force)

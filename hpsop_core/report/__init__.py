@@ -4,6 +4,19 @@
 * words: what the case assumes and how far its numbers can be trusted; tables: the tables
 * looks: how designs look in its charts, and how large these are
 * html_page: the file's frame and how it is put in its place
+
+``hpsop_core.report(run, target, force=False)`` writes it.
+
+Args:
+    run: finished or not (``open_run``).
+    target: the file.
+    force: replace it if it is there.
+
+Returns:
+    The file.
+
+Raises:
+    InputError: a file that may not or cannot be written.
 """
 
 from __future__ import annotations
@@ -19,7 +32,7 @@ if TYPE_CHECKING:
 
 class _Report(ModuleType):
     def __call__(self, run: RunReader, target: str | Path, force: bool = False) -> Path:
-        """``report.write_report``."""
+        """See the module."""
         from hpsop_core.report.report import write_report
 
         return write_report(run, target, force)

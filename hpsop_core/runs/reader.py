@@ -321,6 +321,12 @@ def _values(connection: sqlite3.Connection) -> dict[str, str]:
 def open_run(path: str | Path) -> RunReader:
     """A run file for reading, also while it is being written.
 
+    Args:
+        path: the run file, finished or not, from this version or an earlier one.
+
+    Returns:
+        The run: ``summary()``, ``front()``, ``members()``, ``design()``, ``generations()``, each a frozen value.
+
     Raises:
         InputError: as ``RunReader``.
     """
