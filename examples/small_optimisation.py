@@ -7,11 +7,19 @@ from __future__ import annotations
 
 import argparse
 import tempfile
+from collections.abc import Sequence
 from pathlib import Path
 
+import numpy as np
+
 from hpsop_core import load_case, open_run, optimize
+from hpsop_core.charts.looks import Sheet
+from hpsop_core.charts.search import Cloud, Front, Mark, pareto_chart, window
+from hpsop_core.charts.style import PRINT
 from hpsop_core.runs.events import RunEvent
 from hpsop_core.runs.reader import RunReader
+from hpsop_core.runs.records import DesignRecord
+from hpsop_core.typing_aliases import Array
 
 
 def main() -> None:
@@ -44,38 +52,25 @@ def tell(event: RunEvent) -> None:
         print(f"generation {now.generation} of {now.generations}, level {now.level}: {now.hypervolume:.5f}")
 
 
-def drawing(run: RunReader, width: float = 480.0, height: float = 360.0, margin: float = 60.0) -> str:
-    """The last generation's front (filled), the rest of its population (open) and the initial design (a cross)."""
-    front = {record.id for record in run.front()}
-    members = [record for record in run.members() if record.evaluation.ok]
-    initial = run.initial(members[0].evaluation.level).evaluation
-    places = [record.evaluation.objectives for record in members] + [initial.objectives]
-    (x0, x1), (y0, y1) = (
-        (min(place[name] for place in places), max(place[name] for place in places)) for name in ("f1", "f2")
+def objectives(records: Sequence[DesignRecord]) -> Array:
+    """(n, 2) of those that could be computed."""
+    found = [record.evaluation.objectives for record in records if record.evaluation.ok]
+    return np.array([(value["f1"], value["f2"]) for value in found], dtype=float).reshape(-1, 2)
+
+
+def drawing(run: RunReader) -> str:
+    """The last generation's front, the rest of its population and the initial design, as the report draws them."""
+    front, members = objectives(run.front()), objectives(run.members())
+    initial = objectives([run.initial(run.generations()[-1].level)])
+    plot = pareto_chart(
+        clouds=[Cloud(members, "archive", key="population")],
+        fronts=[Front(front, "front", key="front")] if len(front) else [],
+        marks=[Mark(*initial[0], "square", 4.5, "initial", "initial design", "initial design")],
+        limits=window(np.concatenate([front, initial]), members),
+        titles=(run.case.objectives.first, run.case.objectives.second),
+        sheet=Sheet(480.0, 360.0, PRINT),
     )
-
-    def at(place: dict[str, float]) -> tuple[float, float]:
-        x = margin + (width - 2 * margin) * (place["f1"] - x0) / max(x1 - x0, 1e-9)
-        return x, height - margin - (height - 2 * margin) * (place["f2"] - y0) / max(y1 - y0, 1e-9)
-
-    marks = []
-    for record in members:
-        x, y = at(record.evaluation.objectives)
-        fill = "#0b6" if record.id in front else "none"
-        marks.append(f'<circle cx="{x:.1f}" cy="{y:.1f}" r="4" fill="{fill}" stroke="#0b6"/>')
-    x, y = at(initial.objectives)
-    marks.append(f'<path d="M{x - 5:.1f} {y:.1f}h10M{x:.1f} {y - 5:.1f}v10" stroke="#c33" stroke-width="2"/>')
-    names = run.case.objectives
-    words = [
-        f'<text x="{width / 2}" y="{height - 15}" text-anchor="middle">{names.first}: {x0:.4f} to {x1:.4f}</text>',
-        f'<text x="20" y="{height / 2}" text-anchor="middle" transform="rotate(-90 20 {height / 2})">'
-        f"{names.second}: {y0:.4f} to {y1:.4f}</text>",
-    ]
-    frame = f'<rect x="{margin - 15}" y="{margin - 15}" width="{width - 2 * margin + 30}" '
-    frame += f'height="{height - 2 * margin + 30}" fill="none" stroke="#888"/>'
-    body = "\n".join([frame, *marks, *words])
-    head = f'<svg xmlns="http://www.w3.org/2000/svg" viewBox="0 0 {width:g} {height:g}" font-family="sans-serif">'
-    return f"{head}\n{body}\n</svg>\n"
+    return plot.file_svg("pareto")
 
 
 if __name__ == "__main__":
