@@ -1,6 +1,6 @@
 """A run as one HTML file to print or pass on; called, it is ``report`` of the Python interface.
 
-* report: the file from a run, chapter by chapter
+* report: the file from a run, chapter by chapter; data: what it draws from
 * words: what the case assumes and how far its numbers can be trusted; tables: the tables
 * looks: how designs look in its charts, and how large these are
 * html_page: the file's frame and how it is put in its place

@@ -19,8 +19,9 @@ from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thr
 from hpsop_core.charts.search import convergence_chart
 from hpsop_core.evaluation.curves import hull_lines, resistance_points, thrust_curves
 from hpsop_core.quantities import all_quantities, number_text
+from hpsop_core.report.data import ReportData
 from hpsop_core.report.looks import COMPROMISE_LOOK, INITIAL_LOOK, SHEET
-from hpsop_core.report.report import ReportData, report_html
+from hpsop_core.report.report import report_html
 from hpsop_core.report.tables import failure_table
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.reader import RunReader, open_run
