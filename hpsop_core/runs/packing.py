@@ -48,17 +48,13 @@ def unpack(packed: bytes, dictionary: bytes, variables: str) -> dict[str, Any]:
     document["variables"] = named_variables(variables)
     curves = document.get("open_water")
     if curves and "open_water_efficiency" not in curves:
-        curves["open_water_efficiency"] = _efficiencies(curves)
+        curves["open_water_efficiency"] = _left_out_before(curves)
     return document
 
 
 def dictionary_of(document: Mapping[str, Any]) -> bytes:
     """What is deflated, and a run's dictionary if it is made of the first evaluation: words, a break, numbers."""
     essence = {key: value for key, value in document.items() if key != "variables"}
-    curves = document.get("open_water")
-    # Compared as text, which tells -0.0 from 0.0.
-    if curves and json_text(curves["open_water_efficiency"]) == json_text(_efficiencies(curves)):
-        essence["open_water"] = {key: value for key, value in curves.items() if key != "open_water_efficiency"}
     numbers: list[float] = []
     words = json_text(_split(essence, numbers))
     if not all(map(math.isfinite, numbers)):
@@ -88,8 +84,11 @@ def _joined(value: Any, numbers: Iterator[float]) -> Any:
     return value
 
 
-def _efficiencies(curves: Mapping[str, Sequence[float]]) -> list[float | None]:
-    # The evaluation's own formula, operation by operation: the same bits, or the column is stored.
+def _left_out_before(curves: Mapping[str, Sequence[float]]) -> list[float | None]:
+    """The efficiencies that files of earlier versions left out: a rule of those files, whatever evaluations do today.
+
+    They left the column out where it had the very bits of J KT/(2 pi KQ), computed in this order.
+    """
     names = ("advance_coefficient", "thrust_coefficient", "torque_coefficient")
     return [
         j * kt / (2.0 * math.pi * kq) if kq else None for j, kt, kq in zip(*(curves[n] for n in names), strict=True)
