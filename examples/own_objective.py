@@ -2,7 +2,8 @@
 
     python examples/own_objective.py [--generations 12] [--population 16]
 
-An objective that everyone shall have is one entry in hpsop_core (docs/architecture.md); this is the way for one's own.
+An objective that everyone shall have is one entry in hpsop_core, see docs/adding-an-objective.md; this is the way for
+one's own.
 """
 
 from __future__ import annotations
@@ -23,7 +24,7 @@ from hpsop_core.runs.tasks import Physics, hydrodynamics
 def evaluate_transport(case: Case, variables: DesignVariables, level: int, reference: Any) -> Evaluation:
     """The evaluation with f1 = power per transport work in W/(kN m/s), f2 as the case has it. (Workers import this.)"""
     result = evaluate(case, variables, level, reference)
-    if not result.ok or result.hull is None:
+    if not result.ok:
         return result
     weight = case.constants.density * case.constants.gravity * result.hull.displaced_volume / 1e3
     transport = sum(c.weight * c.delivered_power / (weight * c.speed) for c in result.conditions)

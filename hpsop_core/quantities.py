@@ -10,25 +10,14 @@ import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
+from hpsop_core.case import constraints
 from hpsop_core.case.case import Case
 from hpsop_core.case.declared_variable import Variable
+from hpsop_core.case.objectives import objective_named
 from hpsop_core.case.variables import VARIABLE_TABLE, DesignVariables
 from hpsop_core.evaluation.result import Evaluation
 
-OBJECTIVE_TITLES = {
-    "resistance": "resistance, Σ w R/R₀",
-    "efficiency": "efficiency, Σ w η₀/η",
-    "delivered_power": "delivered power, Σ w P/P₀",
-    "displacement": "displacement, ∇₀/∇",
-    "cavitation_margin": "cavitation margin, 1 − (EAR − EARreq)/EAR",
-}
-CONSTRAINT_WORDS = {
-    "displacement": "displacement differs from the initial design's by more than allowed (g₁)",
-    "diameter_to_draft": "D/d outside its limits (g₂)",
-    "cavitation": "blade area below Keller's requirement (g₃)",
-    "form": "the parent form does not carry this displacement or LCB",
-    "propeller_clearance": "the propeller would cut the hull",
-}
+CONSTRAINT_GROUP = "Constraints (feasible ≤ 0)"
 
 
 @dataclass(frozen=True)
@@ -91,7 +80,7 @@ def _variable(item: Variable) -> Callable[[Evaluation], float | None]:
 
 def _hull(name: str, scale: float = 1.0) -> Callable[[Evaluation], float | None]:
     def get(evaluation: Evaluation) -> float | None:
-        value = getattr(evaluation.hull, name, None) if evaluation.hull else None
+        value = getattr(evaluation.hull, name) if evaluation.ok else None
         return None if value is None else float(value) * scale
 
     return get
@@ -99,7 +88,7 @@ def _hull(name: str, scale: float = 1.0) -> Callable[[Evaluation], float | None]
 
 def _propeller(name: str) -> Callable[[Evaluation], float | None]:
     def get(evaluation: Evaluation) -> float | None:
-        value = getattr(evaluation.propeller, name, None) if evaluation.propeller else None
+        value = getattr(evaluation.propeller, name) if evaluation.ok else None
         return None if value is None else float(value)
 
     return get
@@ -109,7 +98,7 @@ def _condition(index: int, name: str, scale: float = 1.0) -> Callable[[Evaluatio
     def get(evaluation: Evaluation) -> float | None:
         if index >= len(evaluation.conditions):
             return None
-        value = getattr(evaluation.conditions[index], name, None)
+        value = getattr(evaluation.conditions[index], name)
         return None if value is None else float(value) * scale
 
     return get
@@ -182,10 +171,9 @@ OBJECTIVES: tuple[Quantity, ...] = (
     Quantity("f2", "second objective", "f₂", "", 4, _objective("f2"), "Objectives", -1),
 )
 
-CONSTRAINTS: tuple[Quantity, ...] = (
-    Quantity("g1", "displacement", "g₁", "", 4, _constraint("displacement"), "Constraints (feasible ≤ 0)"),
-    Quantity("g2", "diameter / draft", "g₂", "", 4, _constraint("diameter_to_draft"), "Constraints (feasible ≤ 0)"),
-    Quantity("g3", "cavitation (Keller)", "g₃", "", 4, _constraint("cavitation"), "Constraints (feasible ≤ 0)"),
+CONSTRAINTS: tuple[Quantity, ...] = tuple(
+    Quantity(f"g_{item.name}", item.label, item.symbol, "", 4, _constraint(item.name), CONSTRAINT_GROUP)
+    for item in constraints.CONSTRAINTS
 )
 
 _CONDITION = (
@@ -237,14 +225,15 @@ def all_quantities(froude_numbers: Sequence[float]) -> tuple[Quantity, ...]:
 
 
 def objective_title(name: str, symbol: str) -> str:
-    """An objective's axis title: f₁ · resistance, Σ w R/R₀ [-]."""
-    return f"{symbol} = {OBJECTIVE_TITLES.get(name, name)} [–]"
+    """An objective's axis title: f₁ = resistance, Σ w R/R₀ [–]."""
+    return f"{symbol} = {objective_named(name).title} [–]"
 
 
 def violated(evaluation: Evaluation) -> list[str]:
     """Violated constraints in words with their amounts."""
+    values = evaluation.constraints
     return [
-        f"{CONSTRAINT_WORDS.get(name, name)} by {number_text(value, 4)}"
-        for name, value in evaluation.constraints.items()
-        if value is not None and value > 1e-6
+        f"{item.violated} ({item.symbol}) by {number_text(values[item.name], 4)}"
+        for item in constraints.CONSTRAINTS
+        if item.is_violated(values.get(item.name))
     ]

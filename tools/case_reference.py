@@ -9,7 +9,9 @@ import math
 import sys
 
 from hpsop_core.case.case import SECTIONS, SHIPPED_CASES, load_case
+from hpsop_core.case.constraints import CONSTRAINTS
 from hpsop_core.case.fields import FieldRule, rules, toml_text
+from hpsop_core.case.objectives import OBJECTIVES
 from hpsop_core.case.variables import VARIABLE_TABLE
 
 _HEAD = """# The case file
@@ -49,6 +51,12 @@ def case_reference() -> str:
             default = getattr(declaration, name, rule.default)
             shown = "-" if default is None else toml_text({name: default}).strip().removeprefix(f"{name} = ")
             parts.append(f"| {name} | {shown} | {rule.unit or '-'} | {_limits(rule)} | {rule.meaning} |")
+        if section == "objectives":
+            parts.append("\n| objective | formula | meaning |\n|---|---|---|")
+            parts += [f"| {item.name} | {item.formula} | {item.words} |" for item in OBJECTIVES]
+        if section == "constraints":
+            parts.append("\n| constraint (g <= 0) | symbol | applies | g is |\n|---|---|---|---|")
+            parts += [f"| {item.name} | {item.symbol} | {item.applies} | {item.meaning} |" for item in CONSTRAINTS]
     return "\n".join(parts) + "\n"
 
 

@@ -78,7 +78,7 @@ def _with_lines(session: Session, designs: Designs) -> list[tuple[Look, HullLine
     return [
         (look, designs.lines(shown.evaluation.variables))
         for look, shown in overlaid(session, designs)
-        if shown.evaluation.hull is not None
+        if shown.evaluation.ok
     ]
 
 

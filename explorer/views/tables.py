@@ -7,6 +7,7 @@ from collections.abc import Mapping, Sequence
 from explorer.state.shown import Shown
 from hpsop_core.markup import Markup, fill, joined, symbol_html
 from hpsop_core.quantities import (
+    CONSTRAINT_GROUP,
     CONSTRAINTS,
     HULL,
     OBJECTIVES,
@@ -19,7 +20,7 @@ from hpsop_core.quantities import (
 )
 
 _ROOM_FOR_NAMES = 4
-_PLAIN_CHANGE = {"Constraints (feasible ≤ 0)"}
+_PLAIN_CHANGE = {CONSTRAINT_GROUP}
 
 
 def headline(shown: Shown) -> Markup:

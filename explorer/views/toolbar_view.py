@@ -102,7 +102,7 @@ class ToolbarView:
             return
         evaluation = shown.evaluation
         facts = NOTHING
-        if evaluation.hull is not None:
+        if evaluation.ok:
             hull = evaluation.hull
             facts = fill(
                 "L<sub>PP</sub> {:.1f} m · B {:.2f} m · d {:.2f} m · C<sub>B</sub> {:.3f} · ∇ {} m³<br>"

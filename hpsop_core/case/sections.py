@@ -8,10 +8,9 @@ from dataclasses import dataclass
 
 from hpsop_core.assets import SHIPPED_HULLS, SHIPPED_PROPELLERS
 from hpsop_core.case.fields import choice, flag, integer, number, numbers, optional_number, text
+from hpsop_core.case.objectives import OBJECTIVE_NAMES
 from hpsop_core.case.variables import DesignVariables, StatedVariables
 from hpsop_core.errors import InputError
-
-OBJECTIVES = ("resistance", "efficiency", "delivered_power", "displacement", "cavitation_margin")
 
 
 @dataclass(frozen=True)
@@ -109,8 +108,8 @@ class ConditionsSection:
 class ObjectivesSection:
     """The two objectives; both are minimised and normalised by the initial design at the same level."""
 
-    first: str = choice("resistance", OBJECTIVES, "f1")
-    second: str = choice("efficiency", OBJECTIVES, "f2")
+    first: str = choice("resistance", OBJECTIVE_NAMES, "f1")
+    second: str = choice("efficiency", OBJECTIVE_NAMES, "f2")
 
     def __post_init__(self) -> None:
         if self.first == self.second:

@@ -36,7 +36,7 @@ def open_water_chart(
         published: points to draw in.
         required: whether the conditions are drawn.
     """
-    shown = [(look, smooth_open_water(item.open_water), item) for look, item in designs if item.open_water is not None]
+    shown = [(look, smooth_open_water(item.open_water), item) for look, item in designs if item.ok]
     longest = max((float(curves[0][-1]) for _, curves, _ in shown), default=1.2)
     tops = [float(np.nanmax(values)) for _, (_, _, kq, eta), _ in shown for values in (kq, eta)]
     top = min(1.05 * max([0.8, *tops]), _HIGHEST)

@@ -11,6 +11,7 @@ from numpy.typing import NDArray
 from hpsop_core.charts.axis import Axis, Limits, padded
 from hpsop_core.charts.looks import Published, Sheet, draw_published
 from hpsop_core.charts.plot import Plot
+from hpsop_core.evaluation.levels import LEVEL_NUMBERS
 from hpsop_core.typing_aliases import Array
 
 COINCIDENT = 2.5
@@ -169,7 +170,7 @@ def convergence_chart(
     plot = Plot(sheet.width, sheet.height, x, y, second, margins=(56, 14, 8, 34), style=sheet.style)
     if not shown:
         plot.message("no generation yet")
-    for level in (1, 2):
+    for level in LEVEL_NUMBERS:
         at = [index for index, item in enumerate(levels) if item == level]
         if not at:
             continue
@@ -195,7 +196,7 @@ def best_chart(
     plot = Plot(sheet.width, sheet.height, x, y, margins=(56, 14, 8, 34), style=sheet.style)
     for column, css in ((0, "pin1"), (1, "pin2")):
         plot.line([], [], css, key=f"least f_{column + 1}")
-        for level in (1, 2):
+        for level in LEVEL_NUMBERS:
             at = np.flatnonzero(np.asarray(levels) == level)
             if at.size:
                 plot.line(np.asarray(numbers)[at], values[at, column], css, name=f"least f{column + 1}, level {level}")

@@ -14,12 +14,17 @@ from hpsop_core.case.case import Case, load_case
 from hpsop_core.case.fields import FieldRule, checked_value
 from hpsop_core.case.variables import VARIABLE_NAMES, VARIABLE_TABLE, DesignVariables
 from hpsop_core.errors import InputError
+from hpsop_core.evaluation.levels import FAST, LEVEL_NUMBERS, LEVELS
 
 
 def add_level(parser: argparse.ArgumentParser) -> None:
     """--level 1|2."""
     parser.add_argument(
-        "--level", type=int, choices=(1, 2), default=1, help="1: thin ship and lifting line; 2: panel methods"
+        "--level",
+        type=int,
+        choices=LEVEL_NUMBERS,
+        default=FAST.number,
+        help="; ".join(f"{level.number}: {level.words}" for level in LEVELS),
     )
 
 

@@ -91,21 +91,19 @@ def _evaluate(arguments: argparse.Namespace) -> int:
 def print_evaluation(result: Evaluation) -> None:
     print(f"{result.case}, level {result.level}: {result.status}{' - ' + result.reason if result.reason else ''}")
     print("\n".join(describe_variables(result.variables)))
-    if result.hull is None or not result.conditions:
+    if not result.ok:
         return
-    hull = result.hull
+    hull, own = result.hull, result.propeller
     print(
         f"hull: Lpp {hull.length:.2f} m, B {hull.breadth:.2f} m, d {hull.draft:.2f} m, "
         f"CB {hull.block_coefficient:.4f}, volume {hull.displaced_volume:,.0f} m3, S {hull.wetted_surface:,.0f} m2, "
         f"LCB {hull.longitudinal_centre_of_buoyancy:.2f} m from AP"
     )
-    if result.propeller is not None:
-        own = result.propeller
-        print(
-            f"propeller: D {own.diameter:.3f} m, Z {own.blade_count}, P/D {own.pitch_diameter_ratio_07R:.4f} at 0.7 R, "
-            f"EAR {own.expanded_area_ratio:.3f}, D/d {own.diameter / hull.draft:.3f}, "
-            f"tip clearance to the hull {own.tip_clearance:.2f} m"
-        )
+    print(
+        f"propeller: D {own.diameter:.3f} m, Z {own.blade_count}, P/D {own.pitch_diameter_ratio_07R:.4f} at 0.7 R, "
+        f"EAR {own.expanded_area_ratio:.3f}, D/d {own.diameter / hull.draft:.3f}, "
+        f"tip clearance to the hull {own.tip_clearance:.2f} m"
+    )
     if hull.booked_volume is not None:
         print(f"booked (affine form): CB {hull.booked_block_coefficient:.4f}, volume {hull.booked_volume:,.0f} m3")
     header = ["Fn", "V m/s", "Rf MN", "Rw MN", "Rt MN", "w", "t", "J", "n rpm", "KT", "10KQ", "eta0", "PD MW", "EAR"]

@@ -7,9 +7,9 @@ import math
 import numpy as np
 
 from hpsop_core.case.case import Case
+from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.evaluation.hull_answer import ResistancePoint
 from hpsop_core.evaluation.propeller_answer import PropellerAnswer
-from hpsop_core.evaluation.result import ConditionResult
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.hydro import cavitation

@@ -102,10 +102,10 @@ def resistance_points(
     """Resistance over ``froude_range`` at the evaluation's level, calibrated as the evaluation was.
 
     Raises:
-        SolverFailure: the design has no conditions, or a speed cannot be computed.
+        SolverFailure: the design failed, or a speed cannot be computed.
     """
-    if not evaluation.conditions:
-        raise SolverFailure("curves", evaluation.reason or "the design has no operating conditions")
+    if not evaluation.ok:
+        raise SolverFailure("curves", evaluation.reason)
     froude_numbers = froude_range(evaluation, above, step)
     return resistance_curve(case, evaluation.variables, evaluation.level, froude_numbers, reference)
 
@@ -129,11 +129,11 @@ def thrust_curves(case: Case, evaluation: Evaluation, points: tuple[ResistancePo
     """Thrust required and available over the speeds of a resistance curve.
 
     Raises:
-        SolverFailure: the design has no open-water curves.
+        SolverFailure: the design failed.
     """
+    if not evaluation.ok:
+        raise SolverFailure("curves", evaluation.reason)
     curve = evaluation.open_water
-    if curve is None or not evaluation.conditions:
-        raise SolverFailure("curves", evaluation.reason or "the design has no open-water curves")
     speed = np.array([point.speed for point in points])
     diameter = evaluation.variables.diameter
     thrust_coefficient = CubicSpline(curve.advance_coefficient, curve.thrust_coefficient, extrapolate=False)

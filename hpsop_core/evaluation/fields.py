@@ -12,12 +12,14 @@ from dataclasses import dataclass
 import numpy as np
 
 from hpsop_core.case.case import Case
+from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.levels import FAST, LEVEL_NUMBERS, TRUTH, level_of
 from hpsop_core.evaluation.physics import basis_for
 from hpsop_core.evaluation.reference import Reference
-from hpsop_core.evaluation.result import ConditionResult, Evaluation
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.geometry.clearance import propeller_placement
 from hpsop_core.geometry.hull.hull import Hull
@@ -142,20 +144,20 @@ def waves(
         InputError: there is no such condition, or no solver for this Froude number.
         SolverFailure: the design's form or waves cannot be computed.
     """
-    own = design.level if isinstance(design, Evaluation) else 1
+    own = design.level if isinstance(design, Evaluation) else FAST.number
     wanted = own if level is None else level
-    if wanted not in (1, 2):
+    if wanted not in LEVEL_NUMBERS:
         raise InputError(f"waves: level {wanted} is neither 1 nor 2")
     if froude_number is None:
         variables, point = _at_condition(case, design, wanted, condition, reference)
         froude, calibration = point.froude_number, point.wave_calibration
     else:
         variables, froude, calibration = _variables(case, design), froude_number, 1.0
-        if wanted == 1:
-            basis = reference.basis if reference is not None else basis_for(case, 1)
+        if level_of(wanted) is FAST:
+            basis = reference.basis if reference is not None else basis_for(case, wanted)
             calibration = basis.calibration_at(froude)
     hull = design_hull(case, variables)
-    return _panel_waves(hull, froude) if wanted == 2 else kelvin_waves(hull, froude, calibration, grid)
+    return _panel_waves(hull, froude) if level_of(wanted) is TRUTH else kelvin_waves(hull, froude, calibration, grid)
 
 
 def kelvin_waves(
@@ -327,8 +329,8 @@ def _at_condition(
         known = design
     else:
         known = evaluate(case, _variables(case, design), level or 2, reference)
-    if not known.conditions:
-        raise SolverFailure(known.stage or "fields", known.reason or "the design has no operating point")
+    if not known.ok:
+        raise SolverFailure(known.stage, known.reason)
     if not 0 <= condition < len(known.conditions):
         raise InputError(f"condition {condition}: the case has {len(known.conditions)}, numbered from 0")
     return known.variables, known.conditions[condition]

@@ -9,10 +9,9 @@ from pathlib import Path
 
 from hpsop_core.case.sections import HullSection
 from hpsop_core.case.variables import DesignVariables
-from hpsop_core.errors import InputError, SolverFailure
+from hpsop_core.evaluation.levels import WaveAnswer, level_of
 from hpsop_core.geometry.hull.hull import Hull, ParentHull, load_parent_hull
 from hpsop_core.geometry.hull.input import parent_hull_from_offsets, parent_hull_from_stl
-from hpsop_core.hydro import michell
 from hpsop_core.hydro.friction import ittc57_coefficient
 
 
@@ -33,24 +32,6 @@ class HullVariables:
     draft: float
     displaced_volume: float | None
     buoyancy_centre_shift: float
-
-
-@dataclass(frozen=True)
-class WaveAnswer:
-    """A solver's answer at one Froude number.
-
-    Attributes:
-        wave_coefficient: Rw over 1/2 rho V^2 S, S the design's own static wetted surface.
-        wave_coefficient_pressure: level 2's cross-check, else None.
-        sinkage: level 2, in m, positive down; trim: in rad, positive bow down; else None.
-        warnings: what the solver says about its answers, one line each.
-    """
-
-    wave_coefficient: float
-    wave_coefficient_pressure: float | None = None
-    sinkage: float | None = None
-    trim: float | None = None
-    warnings: tuple[str, ...] = ()
 
 
 @dataclass(frozen=True)
@@ -132,24 +113,7 @@ def solve_waves(hull: Hull, level: int, froude_numbers: Sequence[float]) -> tupl
     Raises:
         SolverFailure: the solver cannot give a number, or is not made for one of these Froude numbers.
     """
-    if level == 1:
-        table = hull.offset_table()
-        coefficients = michell.wave_coefficients(
-            table.x, table.z, table.y, hull.length, hull.hydrostatics.wetted_surface, froude_numbers
-        )
-        return tuple(WaveAnswer(float(value)) for value in coefficients)
-    # Loaded when it is needed: its compiled kernels take a second to load, and level 1 must answer at once.
-    from hpsop_core.hydro.rankine import solver as rankine
-
-    try:
-        result = rankine.solve(hull, froude_numbers)
-    except InputError as problem:
-        # Froude numbers follow from a design's length at fixed speed: out of range is that design's failure.
-        raise SolverFailure("rankine", str(problem)) from problem
-    return tuple(
-        WaveAnswer(point.wave_coefficient, point.wave_coefficient_pressure, point.sinkage, point.trim, result.warnings)
-        for point in result.conditions
-    )
+    return level_of(level).solve_waves(hull, froude_numbers)
 
 
 def resistance_point(

@@ -13,6 +13,7 @@ from hpsop_core.case.case import Case
 from hpsop_core.case.fields import FieldRule, checked_value
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
+from hpsop_core.evaluation.levels import level_of
 from hpsop_core.evaluation.propeller_answer import solve_open_water
 from hpsop_core.evaluation.shapes import design_propeller
 from hpsop_core.geometry.propeller.propeller import Propeller
@@ -111,8 +112,7 @@ def open_water(
         InputError: a number outside its limits, or a file that the case names cannot be used.
         SolverFailure: the family does not reach the propeller, or the solver does not converge; names the J.
     """
-    if level not in (1, 2):
-        raise ValueError(f"level {level} is neither 1 nor 2")
+    level_of(level)
     advance = tuple(checked_value(float(value), ADVANCE_RULE, "advance_coefficients") for value in advance_coefficients)
     if not advance:
         raise InputError("advance_coefficients: none given; give for example (0.5, 0.7, 0.9)")

@@ -7,14 +7,15 @@ from dataclasses import dataclass
 import numpy as np
 
 from hpsop_core.case.case import Case
+from hpsop_core.case.design_numbers import DesignNumbers, HullResult, PropellerResult
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.evaluation.condition import condition_result
 from hpsop_core.evaluation.hull_answer import build_hull, hull_variables, resistance_point, wave_answers
+from hpsop_core.evaluation.levels import TRUTH, Level, level_of
 from hpsop_core.evaluation.propeller_answer import build_propeller, propeller_answer, propeller_variables
-from hpsop_core.evaluation.result import ConditionResult
 from hpsop_core.evaluation.shapes import initial_volume
+from hpsop_core.geometry.clearance import baseline_clearance, propeller_clearance
 from hpsop_core.geometry.hull.hull import Hull
-from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.hydro.interaction import wake_fraction
 from hpsop_core.hydro.operating_point import PropellerCurve
 
@@ -52,29 +53,22 @@ def basis_for(case: Case, level: int) -> Basis:
         displaced_volume=volume,
         speeds=tuple(froude * (case.constants.gravity * case.initial.length) ** 0.5 for froude in froude_numbers),
         froude_numbers=froude_numbers,
-        wave_calibration=_wave_calibration(case, volume) if level == 1 else (1.0,) * len(froude_numbers),
+        wave_calibration=_wave_calibration(case, level_of(level), volume),
     )
 
 
 @dataclass(frozen=True)
 class Physics:
-    """A design's numbers before they are normalised.
+    """A design's physics before anything is normalised.
 
     Attributes:
-        hull, propeller: the shapes.
-        conditions: one a condition of the case.
+        numbers: of hull, propeller and conditions.
         curve: the propeller's open-water curve.
-        effective_volume: in m3; booked with the affine form, else the hull's own.
-        effective_block_coefficient: likewise.
-        warnings: of the solvers.
+        warnings: of the form and of the solvers.
     """
 
-    hull: Hull
-    propeller: Propeller
-    conditions: tuple[ConditionResult, ...]
+    numbers: DesignNumbers
     curve: PropellerCurve
-    effective_volume: float
-    effective_block_coefficient: float
     warnings: tuple[str, ...]
 
 
@@ -123,20 +117,60 @@ def compute(case: Case, variables: DesignVariables, level: int, basis: Basis) ->
         )
         for froude, wave, weight in zip(froude_numbers, waves, case.conditions.weights, strict=True)
     )
+    numbers = DesignNumbers(
+        level=level,
+        variables=variables,
+        hull=_hull_result(hull, (volume, block_coefficient) if case.hull.form == "affine" else None),
+        propeller=PropellerResult(
+            diameter=propeller.diameter,
+            blade_count=propeller.blade_count,
+            pitch_ratio=propeller.pitch_ratio,
+            pitch_diameter_ratio_07R=propeller.pitch_diameter_ratio_07R,
+            expanded_area_ratio=propeller.expanded_area_ratio,
+            shaft_height=hull.shaft_height,
+            tip_clearance=propeller_clearance(hull, propeller),
+        ),
+        conditions=conditions,
+        baseline_clearance=baseline_clearance(hull, propeller),
+        buoyancy_centre_missed=_centre_missed(hull, variables),
+    )
     # A solver tells everything of one call with each of its answers.
-    warnings = tuple(dict.fromkeys(line for wave in waves for line in wave.warnings))
-    return Physics(hull, propeller, conditions, answer.curve, volume, block_coefficient, warnings)
+    warnings = dict.fromkeys(line for wave in waves for line in wave.warnings)
+    return Physics(numbers, answer.curve, (*hull.warnings, *warnings))
 
 
-def _wave_calibration(case: Case, volume: float) -> tuple[float, ...]:
-    """Level 1's factors: level 2's (or the stated) wave resistance of the initial design over Michell's."""
+def _hull_result(hull: Hull, booked: tuple[float, float] | None) -> HullResult:
+    hydrostatics = hull.hydrostatics
+    return HullResult(
+        length=hull.length,
+        breadth=hull.breadth,
+        draft=hull.draft,
+        block_coefficient=hydrostatics.block_coefficient,
+        displaced_volume=hydrostatics.displaced_volume,
+        wetted_surface=hydrostatics.wetted_surface,
+        longitudinal_centre_of_buoyancy=hydrostatics.longitudinal_centre_of_buoyancy,
+        clipped=hull.clipped,
+        booked_block_coefficient=None if booked is None else booked[1],
+        booked_volume=None if booked is None else booked[0],
+    )
+
+
+def _centre_missed(hull: Hull, variables: DesignVariables) -> float:
+    """How far the centre of buoyancy lies from the asked place, as a fraction of the length."""
+    parent = hull.parent
+    own = parent.hydrostatics.longitudinal_centre_of_buoyancy / parent.length + variables.buoyancy_centre_shift
+    return abs(hull.hydrostatics.longitudinal_centre_of_buoyancy / hull.length - own)
+
+
+def _wave_calibration(case: Case, level: Level, volume: float) -> tuple[float, ...]:
+    """The level's factors: level 2's (or the stated) wave resistance of the initial design over the level's own."""
     froude_numbers = case.conditions.froude_numbers
-    if case.constants.wave_calibration == "none":
+    if not level.is_calibrated or case.constants.wave_calibration == "none":
         return (1.0,) * len(froude_numbers)
     key = hull_variables(case.hull, case.initial.variables, volume)
     if case.constants.wave_calibration == "stated":
         wanted = case.constants.stated_wave_coefficients
     else:
-        wanted = tuple(answer.wave_coefficient for answer in wave_answers(key, 2, froude_numbers))
-    thin_ship = wave_answers(key, 1, froude_numbers)
-    return tuple(value / answer.wave_coefficient for value, answer in zip(wanted, thin_ship, strict=True))
+        wanted = tuple(answer.wave_coefficient for answer in wave_answers(key, TRUTH.number, froude_numbers))
+    own = wave_answers(key, level.number, froude_numbers)
+    return tuple(value / answer.wave_coefficient for value, answer in zip(wanted, own, strict=True))

@@ -12,9 +12,9 @@ import numpy as np
 
 from hpsop_core.case.sections import PropellerSection
 from hpsop_core.case.variables import DesignVariables
+from hpsop_core.evaluation.levels import level_of
 from hpsop_core.geometry.propeller.input import radial_table_from_csv
 from hpsop_core.geometry.propeller.propeller import Propeller, RadialTable, load_propeller, propeller_family
-from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.open_water import OpenWater, SectionDrag
 from hpsop_core.hydro.operating_point import PropellerCurve, chebyshev_nodes
 from hpsop_core.typing_aliases import Array
@@ -103,13 +103,9 @@ def propeller_answer(variables: PropellerVariables, level: int, roughness: float
     """
     nodes = chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
     propeller, drag = build_propeller(variables), SectionDrag.full_scale(roughness)
-    if level == 1:
-        result, pressures = lifting_line.solve(propeller, nodes, drag), None
-    else:
-        from hpsop_core.hydro.blade_panels import solver as blade_panels
-
-        panels = blade_panels.solve(propeller, nodes, drag)
-        result, pressures = panels.open_water, panels.pressure_table()
+    solution = level_of(level).solve_propeller(propeller, nodes, drag)
+    result = solution.open_water
+    pressures = solution.pressures() if solution.pressures else None
     return PropellerAnswer(PropellerCurve(nodes, result.thrust_coefficient, result.torque_coefficient), pressures)
 
 
@@ -122,9 +118,4 @@ def solve_open_water(
         SolverFailure: the solver does not converge; names the J.
     """
     advance = np.asarray(advance_coefficients, dtype=float)
-    if level == 1:
-        return lifting_line.solve(propeller, advance, drag)
-    # Loaded when it is needed: its compiled kernels take a second to load, and level 1 must answer at once.
-    from hpsop_core.hydro.blade_panels import solver as blade_panels
-
-    return blade_panels.solve(propeller, advance, drag).open_water
+    return level_of(level).solve_propeller(propeller, advance, drag).open_water

@@ -3,10 +3,11 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass
+from dataclasses import asdict, dataclass, fields
 from typing import Any
 
 from hpsop_core.case.case import Case
+from hpsop_core.case.design_numbers import ConditionResult, DesignNumbers, InitialNumbers
 from hpsop_core.evaluation.physics import Basis, basis_for, compute
 from hpsop_core.one_thread import one_blas_thread
 
@@ -17,36 +18,47 @@ class Reference:
 
     Attributes:
         level: 1 or 2.
-        displaced_volume: V0, the initial design's displacement in m3 (booked with the affine form).
-        speeds: the initial design's speeds at the case's Froude numbers, in m/s.
-        froude_numbers: the case's.
-        wave_calibration: factors on level 1's wave resistance at these Froude numbers; ones at level 2.
-        total_resistance, efficiency, delivered_power: the initial design's, one a condition.
+        basis: what every design's physics takes from the initial design.
+        initial: the initial design's numbers.
     """
 
     level: int
-    displaced_volume: float
-    speeds: tuple[float, ...]
-    froude_numbers: tuple[float, ...]
-    wave_calibration: tuple[float, ...]
-    total_resistance: tuple[float, ...]
-    efficiency: tuple[float, ...]
-    delivered_power: tuple[float, ...]
+    basis: Basis
+    initial: InitialNumbers
 
     def as_dict(self) -> dict[str, Any]:
         """For the run file."""
-        return {key: list(v) if isinstance(v, tuple) else v for key, v in asdict(self).items()}
+        basis = {key: list(value) if isinstance(value, tuple) else value for key, value in asdict(self.basis).items()}
+        conditions = {name: list(values) for name, values in self.initial.conditions.items()}
+        return {"level": self.level, **basis, "conditions": conditions, "hull": dict(self.initial.hull)}
 
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> Reference:
-        """The reference that ``as_dict`` described, to the last bit."""
-        values: dict[str, Any] = {key: tuple(v) if isinstance(v, list) else v for key, v in data.items()}
-        return cls(**values)
+        """The reference that ``as_dict`` described, to the last bit.
 
-    @property
-    def basis(self) -> Basis:
-        """The part that a design's physics takes from the initial design."""
-        return Basis(self.displaced_volume, self.speeds, self.froude_numbers, self.wave_calibration)
+        A file of schema 2 kept three of the numbers; an objective that needs another one has no value there.
+        """
+        columns = data.get("conditions")
+        if columns is None:
+            columns = {name: data[old] for old, name in _SCHEMA_2.items()}
+        stored = {item.name: data[item.name] for item in fields(Basis)}
+        basis: dict[str, Any] = {key: tuple(v) if isinstance(v, list) else v for key, v in stored.items()}
+        return cls(
+            level=data["level"],
+            basis=Basis(**basis),
+            initial=InitialNumbers(
+                displaced_volume=data["displaced_volume"],
+                conditions={name: tuple(values) for name, values in columns.items()},
+                hull=dict(data.get("hull", {})),
+            ),
+        )
+
+
+_SCHEMA_2 = {
+    "total_resistance": "total_resistance",
+    "efficiency": "open_water_efficiency",
+    "delivered_power": "delivered_power",
+}
 
 
 @one_blas_thread()
@@ -57,14 +69,21 @@ def reference_for(case: Case, level: int) -> Reference:
         SolverFailure: the initial design itself cannot be computed at this level.
     """
     basis = basis_for(case, level)
-    conditions = compute(case, case.initial.variables, level, basis).conditions
-    return Reference(
-        level=level,
-        displaced_volume=basis.displaced_volume,
-        speeds=basis.speeds,
-        froude_numbers=basis.froude_numbers,
-        wave_calibration=basis.wave_calibration,
-        total_resistance=tuple(condition.total_resistance for condition in conditions),
-        efficiency=tuple(condition.open_water_efficiency for condition in conditions),
-        delivered_power=tuple(condition.delivered_power for condition in conditions),
+    numbers = compute(case, case.initial.variables, level, basis).numbers
+    return Reference(level, basis, _initial_numbers(basis.displaced_volume, numbers))
+
+
+def _initial_numbers(volume: float, design: DesignNumbers) -> InitialNumbers:
+    columns = {
+        item.name: tuple(getattr(condition, item.name) for condition in design.conditions)
+        for item in fields(ConditionResult)
+    }
+    return InitialNumbers(
+        displaced_volume=volume,
+        conditions={name: values for name, values in columns.items() if None not in values},
+        hull={
+            name: value
+            for name, value in asdict(design.hull).items()
+            if value is not None and not isinstance(value, bool)
+        },
     )

@@ -14,6 +14,7 @@ from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.curves import resistance_curve
 from hpsop_core.evaluation.hull_answer import ResistancePoint, resistance_point, solve_waves
+from hpsop_core.evaluation.levels import level_of
 from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.hull.hydrostatics import Hydrostatics
@@ -94,8 +95,7 @@ def resistance(
         InputError: a number outside its limits, or a file that the case names cannot be used.
         SolverFailure: the form or its waves cannot be computed.
     """
-    if level not in (1, 2):
-        raise ValueError(f"level {level} is neither 1 nor 2")
+    level_of(level)
     numbers = tuple(float(checked_value(float(value), FROUDE_RULE, "froude_numbers")) for value in froude_numbers)
     if not numbers:
         raise InputError("froude_numbers: none given; give for example (0.22, 0.27)")

@@ -89,9 +89,9 @@ def resistance_table(case: Case, evaluation: Evaluation, reference: Reference) -
 
 def open_water_table(evaluation: Evaluation) -> str:
     """The open-water curves at full scale and the evaluation's level."""
-    curve = evaluation.open_water
-    if curve is None:
+    if not evaluation.ok:
         return ""
+    curve = evaluation.open_water
     header = ("advance_coefficient", "thrust_coefficient", "torque_coefficient", "open_water_efficiency")
     columns = (
         curve.advance_coefficient, curve.thrust_coefficient, curve.torque_coefficient, curve.open_water_efficiency

@@ -9,8 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from hpsop_core.case.constraints import FEASIBILITY_TOLERANCE
 from hpsop_core.case.variables import DesignVariables
-from hpsop_core.evaluation.result import FEASIBILITY_TOLERANCE
 from hpsop_core.typing_aliases import Array
 
 FAILED_OBJECTIVE = 1e3

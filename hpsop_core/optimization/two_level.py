@@ -20,6 +20,7 @@ import numpy as np
 from hpsop_core.case.sections import OptimizationSection
 from hpsop_core.case.variables import DesignSpace, DesignVariables
 from hpsop_core.errors import InputError
+from hpsop_core.evaluation.levels import FAST, TRUTH
 from hpsop_core.optimization.decision import compromise, knee
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.indicators import FrontArchive, feasible_share, hypervolume, spread
@@ -60,7 +61,7 @@ class TwoLevelSearch:
         self._generations = settings.generations
         self._level1_generations = settings.level1_generations
         self._number = 0
-        self._level = 1 if settings.level1_generations > 0 else 2
+        self._level = FAST if settings.level1_generations > 0 else TRUTH
         self._algorithm: Nsga2 | None = None
         self._archive = FrontArchive()
         self._outcomes: dict[int, Outcome] = {}
@@ -83,7 +84,12 @@ class TwoLevelSearch:
     @property
     def level(self) -> int:
         """The level of the next generation."""
-        return self._level
+        return self._level.number
+
+    @property
+    def _level2_comes(self) -> bool:
+        """Whether this is level 1 with level 2 planned after it."""
+        return self._level is FAST and self._level1_generations < self._generations
 
     @property
     def finished(self) -> bool:
@@ -108,7 +114,7 @@ class TwoLevelSearch:
             return self._asked
         if self._algorithm is None:
             vectors, origins = self._first_population() if self._number == 0 else self._handed_over()
-            seed = derived_seed(self._settings.seed, self._level, _SEARCH)
+            seed = derived_seed(self._settings.seed, self._level.number, _SEARCH)
             self._algorithm = Nsga2(self._space, self._operators, vectors, seed)
             named = {self._space.decode(vector): origin for vector, origin in zip(vectors, origins, strict=True)}
         else:
@@ -117,12 +123,12 @@ class TwoLevelSearch:
         if asked is None:
             return self._nothing_new()
         designs = [self._space.decode(vector) for vector in asked]
-        self._asked = tuple(Candidate(self._level, design, named.get(design, "offspring")) for design in designs)
+        self._asked = tuple(Candidate(self._level.number, design, named.get(design, "offspring")) for design in designs)
         return self._asked
 
     def _nothing_new(self) -> tuple[Candidate, ...]:
         # A space with few integer designs can be used up. Level 1 then hands over, level 2 ends.
-        if self._level == 1 and self._level1_generations < self._generations:
+        if self._level2_comes:
             self._begin_level2()
             return self.ask()
         self._exhausted = True
@@ -144,7 +150,7 @@ class TwoLevelSearch:
             self._outcomes[outcome.evaluation_id] = outcome
             self._variables[outcome.evaluation_id] = candidate.variables
         # Level 2 finds a little more thrust: designs bred on level 1's limit of cavitation would be beyond level 2's.
-        margin = settings.handover_margin if self._level == 1 and self._level1_generations < self._generations else 0.0
+        margin = settings.handover_margin if self._level2_comes else 0.0
         view = algorithm_view(list(outcomes), settings.constraint_handling, settings.penalty_factor, margin)
         self._algorithm.tell([outcome.evaluation_id for outcome in outcomes], *view)
         self._archive.add(outcomes)
@@ -159,7 +165,7 @@ class TwoLevelSearch:
         chosen, bend = compromise(front.objectives), knee(front.objectives)
         generation = Generation(
             number=self._number,
-            level=self._level,
+            level=self._level.number,
             asked=tuple(outcome.evaluation_id for outcome in outcomes),
             members=members,
             front=front.ids,
@@ -176,7 +182,7 @@ class TwoLevelSearch:
         return generation
 
     def _end_of_level(self) -> str:
-        if self._level == 2:
+        if self._level is TRUTH:
             return ""
         if self._number >= self._level1_generations:
             return "" if self._number >= self._generations else "level 1 has had its generations"
@@ -191,7 +197,7 @@ class TwoLevelSearch:
         return ""
 
     def _begin_level2(self) -> None:
-        self._level = 2
+        self._level = TRUTH
         self._algorithm = None
         self._archive = FrontArchive()
         self._archive_hypervolumes = []
@@ -229,7 +235,7 @@ class TwoLevelSearch:
     def _filled(self, placed: dict[DesignVariables, str], population: int, origin: str) -> tuple[Array, list[str]]:
         # Only a re-seeded hand-over or a first sample has room; level 1 may also have ended on a small population.
         missing = population - len(placed)
-        sample = latin_hypercube(self._space, missing, derived_seed(self._settings.seed, self._level, _SAMPLE))
+        sample = latin_hypercube(self._space, missing, derived_seed(self._settings.seed, self._level.number, _SAMPLE))
         given = [self._space.encode(design) for design in placed]
         vectors = np.array(given).reshape(len(placed), len(self._space.free))
         return np.vstack((vectors, sample)), [*placed.values(), *([origin] * missing)]

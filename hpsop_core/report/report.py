@@ -15,6 +15,7 @@ from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thr
 from hpsop_core.charts.search import Cloud, Front, Mark, convergence_chart, pareto_chart, window
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.curves import hull_lines, thrust_curves
+from hpsop_core.evaluation.levels import level_of
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import Markup, fill, joined, one_line
 from hpsop_core.quantities import change_text, number_text, objective_title, violated
@@ -105,9 +106,10 @@ def _head(data: ReportData, summary: dict[str, object]) -> Markup:
             summary["generations"],
         )
         parts.append(paragraph(words, "banner"))
-    if data.level == 1:
-        words = Markup(
-            "All results are of <strong>level 1</strong>, the fast and rough one; see “How far to trust these numbers”."
+    if data.level is not None and level_of(data.level).caution:
+        words = fill(
+            "All results are of <strong>level {}</strong>, the fast and rough one; see “How far to trust these numbers”.",
+            data.level,
         )
         parts.append(paragraph(words, "banner"))
     return joined(parts)
@@ -171,16 +173,17 @@ def _in_short(data: ReportData, initial: Evaluation, record: DesignRecord) -> Ma
             speed = _kept(before.speed / 0.514444, 1, "kn")
             line += f" The initial design runs {speed} at that Froude number: the powers are of two speeds."
         lines.append(line)
-    hull, before_hull = chosen.hull, initial.hull
-    if hull is not None and before_hull is not None and hull.booked_volume is not None:
+    booked = chosen.hull.booked_volume if chosen.ok else None
+    if chosen.ok and initial.ok and booked is not None:
+        hull, before_hull = chosen.hull, initial.hull
         line = fill(
             "<strong>Its hull really displaces {}</strong> ({}); the case only books {} ({}).",
             _kept(hull.displaced_volume, 0, "m³"),
             change_text(before_hull.displaced_volume, hull.displaced_volume, 0),
-            _kept(hull.booked_volume, 0, "m³"),
-            change_text(before_hull.booked_volume, hull.booked_volume, 0),
+            _kept(booked, 0, "m³"),
+            change_text(before_hull.booked_volume, booked, 0),
         )
-        if hull.displaced_volume < hull.booked_volume:
+        if hull.displaced_volume < booked:
             line += " A smaller ship is part of the gain."
         lines.append(line)
     first = (
@@ -270,7 +273,7 @@ def _or_why(draw: Callable[[], Markup]) -> Markup:
 
 def _propulsion(data: ReportData) -> Markup:
     drawn = data.drawn()
-    with_curves = [(look, evaluation) for look, evaluation in drawn if evaluation.open_water is not None]
+    with_curves = [(look, evaluation) for look, evaluation in drawn if evaluation.ok]
     if not with_curves:
         return paragraph("There are no curves: no design has open-water results.")
 
@@ -306,7 +309,7 @@ def _propulsion(data: ReportData) -> Markup:
 
 
 def _form(data: ReportData) -> Markup:
-    drawn = [(look, evaluation) for look, evaluation in data.drawn() if evaluation.hull is not None]
+    drawn = [(look, evaluation) for look, evaluation in data.drawn() if evaluation.ok]
     if not drawn:
         return paragraph("There is no form to draw.")
 

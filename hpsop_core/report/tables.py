@@ -10,13 +10,15 @@ from typing import Any
 import numpy as np
 
 from hpsop_core.case.case import Case
+from hpsop_core.case.objectives import objective_named
 from hpsop_core.case.variables import VARIABLE_NAMES
 from hpsop_core.charts.correlations import LEAST_FOR_CORRELATION, correlation_rows, rank_correlations
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import Markup, fill, joined, one_line, symbol_html
 from hpsop_core.quantities import (
+    CONSTRAINT_GROUP,
+    CONSTRAINTS,
     HULL,
-    OBJECTIVE_TITLES,
     OBJECTIVES,
     PROPELLER,
     Quantity,
@@ -46,14 +48,14 @@ def result_quantities(case: Case) -> tuple[Quantity, ...]:
     kept = tuple(q for q in conditions if q.key.rsplit("_", 1)[0] in _IN_RESULT)
     variables = variable_quantities(case.initial.variables)
     pitch = tuple(dataclasses.replace(q, group="Propeller") for q in variables if q.key == "pitch_ratio")
-    return (*OBJECTIVES, *kept, *HULL, *PROPELLER, *pitch)
+    return (*OBJECTIVES, *kept, *HULL, *PROPELLER, *pitch, *CONSTRAINTS)
 
 
 def _named(quantity: Quantity, case: Case) -> Markup:
     label = quantity.label
     if quantity.key in ("f1", "f2"):
         name = case.objectives.first if quantity.key == "f1" else case.objectives.second
-        label = OBJECTIVE_TITLES[name]
+        label = objective_named(name).title
     return fill("{} {} {}", label, symbol_html(quantity.symbol), unit_html(quantity.unit))
 
 
@@ -61,9 +63,8 @@ def _change(quantity: Quantity, initial: Evaluation, other: Evaluation) -> Marku
     before, after = quantity.value(initial), quantity.value(other)
     if before is None or after is None:
         return Markup("")
-    if quantity.key in ("blades",):
-        words = change_text(before, after, 0, relative=False)
-    elif any(quantity.key.startswith(name) for name in _ONLY_DIFFERENCES):
+    plain = quantity.key == "blades" or quantity.group == CONSTRAINT_GROUP
+    if plain or any(quantity.key.startswith(name) for name in _ONLY_DIFFERENCES):
         words = change_text(before, after, quantity.decimals, relative=False)
     else:
         words = change_text(before, after, quantity.decimals)

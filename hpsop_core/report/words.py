@@ -3,9 +3,12 @@
 from __future__ import annotations
 
 from hpsop_core.case.case import Case
+from hpsop_core.case.constraints import CONSTRAINTS
+from hpsop_core.case.objectives import objective_named
 from hpsop_core.case.variables import VARIABLE_TABLE
-from hpsop_core.markup import Markup, fill, one_line, symbol_html
-from hpsop_core.quantities import OBJECTIVE_TITLES, number_text, variable_quantities
+from hpsop_core.evaluation.levels import FAST, TRUTH, level_of
+from hpsop_core.markup import Markup, fill, joined, one_line, symbol_html
+from hpsop_core.quantities import number_text, variable_quantities
 from hpsop_core.report.html_page import Words, bullets, facts, table, unit_html
 
 _FORM: dict[str, Words] = {
@@ -28,13 +31,6 @@ _CALIBRATION = {
     "case",
     "none": "used as Michell's integral gives it, which on a flat stern like the DTC's is several times too high",
 }
-_OBJECTIVES = {
-    "resistance": "total resistance over the initial design's, weighted sum over the conditions",
-    "efficiency": "the initial design's open-water efficiency over the design's, weighted sum (less is better)",
-    "delivered_power": "delivered power over the initial design's, weighted sum",
-    "displacement": "the initial design's displacement over the design's (less is better)",
-    "cavitation_margin": "1 minus the margin of blade area over Keller's requirement at the first condition",
-}
 
 
 def objective_lines(case: Case) -> list[Markup]:
@@ -42,51 +38,41 @@ def objective_lines(case: Case) -> list[Markup]:
     names = (case.objectives.first, case.objectives.second)
     line = "{}: {} <span class=unit>({})</span>"
     return [
-        fill(line, symbol_html(f"f_{number}"), _OBJECTIVES[name], OBJECTIVE_TITLES[name])
-        for number, name in enumerate(names, start=1)
+        fill(line, symbol_html(f"f_{number}"), objective.words, objective.title)
+        for number, objective in enumerate(map(objective_named, names), start=1)
     ]
+
+
+def constraint_clauses(case: Case) -> list[Markup]:
+    """What the case asks by each constraint."""
+    return [fill("{}: {}", symbol_html(item.symbol), item.asked(case)) for item in CONSTRAINTS]
 
 
 def assumptions(case: Case) -> Markup:
     """Form, speed, conditions, objectives, constraints with their level, calibration and constants."""
-    hull, propeller, limits, constants = case.hull, case.propeller, case.constraints, case.constants
+    hull, propeller, constants = case.hull, case.propeller, case.constants
     hull_file = hull.offsets or hull.stl
     own_hull = f"own hull from {hull_file}" if hull_file else f"parent hull {hull.parent}"
     own_blades = (
         f"own propeller from {propeller.geometry}" if propeller.geometry else f"parent propeller {propeller.parent}"
     )
-    keller = (
-        "at both levels" if limits.g3_level == 1 else "at level 2 only: the search at level 1 does not see cavitation"
-    )
     lines: list[Words] = [
         fill("<strong>Parents</strong>: {}, {}.", one_line(own_hull), one_line(own_blades)),
         fill("<strong>Hull form</strong> ({}): {}", hull.form, _FORM[hull.form]),
         fill("<strong>Speed</strong> ({}): {}", case.conditions.speed, _SPEED[case.conditions.speed]),
-        Markup(
-            "<strong>Level 1</strong> (fast): Michell's thin-ship integral and a lifting line. <strong>Level "
-            "2</strong> (slow, better): Rankine panels on hull and water surface, panels on blades and hub. Friction "
-            "by ITTC-57 at both."
+        fill(
+            "<strong>Level {}</strong> (fast): {}. <strong>Level {}</strong> (slow, better): {}. Friction by ITTC-57 at "
+            "both.",
+            FAST.number,
+            FAST.words,
+            TRUTH.number,
+            TRUTH.words,
         ),
         fill(
             "<strong>Calibration</strong>: level 1's wave resistance is {}.", _CALIBRATION[constants.wave_calibration]
         ),
-        fill(
-            "<strong>Constraints</strong>: displacement within {} % of the initial design's (g<sub>1</sub>) and D/d "
-            "from {} to {} (g<sub>2</sub>), at both levels; expanded area ratio at least Keller's with K = {} at the "
-            "first condition (g<sub>3</sub>), {}; the form carries what is asked and the blades clear the hull, at "
-            "both levels.",
-            number_text(100.0 * limits.displacement_tolerance, 1),
-            number_text(limits.diameter_to_draft_lower, 2),
-            number_text(limits.diameter_to_draft_upper, 2),
-            number_text(limits.keller_k, 2),
-            keller,
-        ),
+        fill("<strong>Constraints</strong>: {}.", joined(constraint_clauses(case), "; ")),
     ]
-    if hull.form == "affine":
-        lines.append(
-            f"A booked block coefficient outside {number_text(limits.booked_block_coefficient_lower, 2)} to "
-            f"{number_text(limits.booked_block_coefficient_upper, 2)} counts as infeasible."
-        )
     conditions = table(
         ["condition", "Froude number Fn", "weight"],
         [
@@ -154,14 +140,9 @@ def _constants(case: Case) -> Markup:
 def trust(case: Case, level: int | None) -> Markup:
     """How far the numbers can be trusted; short, and true of this case."""
     lines: list[Words] = []
-    if level == 1:
-        lines.append(
-            Markup(
-                "<strong>All results here are of level 1.</strong> Its ranking of similar hulls is useful; its "
-                "absolute wave resistance is only as good as its calibration. Let the run reach level 2 before "
-                "deciding anything."
-            )
-        )
+    caution = "" if level is None else level_of(level).caution
+    if caution:
+        lines.append(fill("<strong>All results here are of level {}.</strong> {}", level, caution))
     if case.hull.form == "affine":
         lines.append(
             Markup(

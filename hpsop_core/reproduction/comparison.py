@@ -11,6 +11,7 @@ from dataclasses import dataclass
 from hpsop_core.case.case import Case, load_case
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.levels import FAST, LEVEL_NUMBERS
 from hpsop_core.evaluation.propeller_answer import build_propeller, propeller_answer, propeller_variables
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
@@ -107,7 +108,7 @@ class Reproduction:
         compromise = None
         if last is not None and last.compromise is not None:
             compromise = next(record for record in front if record.id == last.compromise)
-        stored = {number: run.reference(number) for number in (1, 2)}
+        stored = {number: run.reference(number) for number in LEVEL_NUMBERS}
         references = {
             number: reference_for(run.case, number) if data is None else Reference.from_dict(data)
             for number, data in stored.items()
@@ -200,8 +201,7 @@ def table3(data: Reproduction) -> Table:
     ]  # fmt: skip
     for name, e in data.designs():
         v = e.variables
-        hull = e.hull
-        booked = None if hull is None else hull.booked_block_coefficient
+        booked = e.hull.booked_block_coefficient if e.ok else None
         words = name
         if data.compromise is not None and dict(data.chosen).get(name) is data.compromise:
             words = f"{name} (compromise)"
@@ -276,14 +276,14 @@ def paper_designs(data: Reproduction) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for design in paper.table3():
         values: list[Cell] = []
-        for level in (1, 2):
+        for level in LEVEL_NUMBERS:
             e = evaluated(data, design, level)
             power: list[float | None] = [c.delivered_power / 1e6 for c in e.conditions]
             power = power or [None, None]
             values += [e.objectives["f1"], e.objectives["f2"], *power, "yes" if e.feasible else "no"]
         rows.append((design.name, design.f1, design.f2, *values))
     one = ("f1 {} [-]", "f2 {} [-]", "PD1 {} [MW]", "PD2 {} [MW]", "feasible {}")
-    header = [name.format(f"level {level}") for level in (1, 2) for name in one]
+    header = [name.format(f"level {level}") for level in LEVEL_NUMBERS for name in one]
     return Table(
         "paper_designs",
         "The designs of the paper's Table 3 computed with hpsop's case dtc-p4119-paper, each level normalised by our "
@@ -313,7 +313,7 @@ def propellers(data: Reproduction) -> Table:
                 None,
             )
         )
-        for level in (1, 2):
+        for level in LEVEL_NUMBERS:
             kt, kq = propeller_answer(key, level, data.case.constants.propeller_roughness).curve.coefficients(j)
             ours = (float(kt), 10.0 * float(kq), j * float(kt) / (2.0 * math.pi * float(kq)))
             theirs = (point.thrust_coefficient, point.ten_torque_coefficient, point.open_water_efficiency)
@@ -398,9 +398,11 @@ def _keller(case: Case, point: PaperPoint) -> float:
 
 def wave_part(data: Reproduction, point: PaperPoint) -> tuple[float, float]:
     """(Rw in N, Cw) that the paper's Rt leaves after ITTC-57 friction on our wetted surface of its dimensions."""
-    hull = data.initial.evaluation.hull if point.design.name == paper.INITIAL else evaluated(data, point.design, 1).hull
-    if hull is None:
+    initial = point.design.name == paper.INITIAL
+    evaluation = data.initial.evaluation if initial else evaluated(data, point.design, FAST.number)
+    if not evaluation.ok:
         raise InputError(f"the paper's {point.design.name} cannot be built; report this")
+    hull = evaluation.hull
     constants = data.case.constants
     dynamic = 0.5 * constants.density * point.speed**2 * hull.wetted_surface
     friction = ittc57_coefficient(point.speed * point.design.length / constants.viscosity) * dynamic
@@ -413,11 +415,11 @@ def resistance_audit(data: Reproduction) -> Table:
     rows: list[tuple[Cell, ...]] = []
     for name in (paper.INITIAL, paper.COMPROMISE):
         points = paper.points_of(name)
-        ours = {level: evaluated(data, points[0].design, level).conditions for level in (1, 2)}
+        ours = {level: evaluated(data, points[0].design, level).conditions for level in LEVEL_NUMBERS}
         for number, point in enumerate(points):
             _, coefficient = wave_part(data, point)
             row: list[Cell] = [name, point.froude_number, point.total_resistance / 1e3, 1e4 * coefficient]
-            for level in (1, 2):
+            for level in LEVEL_NUMBERS:
                 c = ours[level][number] if number < len(ours[level]) else None
                 row += [None, None] if c is None else [c.total_resistance / 1e3, 1e4 * c.wave_coefficient]
             rows.append(tuple(row))

@@ -9,6 +9,7 @@ from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thr
 from hpsop_core.charts.search import Front, evolution_chart
 from hpsop_core.evaluation.curves import resistance_points, thrust_curves
 from hpsop_core.evaluation.hull_answer import ResistancePoint
+from hpsop_core.evaluation.levels import FAST, LEVEL_NUMBERS, TRUTH, level_of
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import Markup
 from hpsop_core.quantities import objective_title
@@ -38,7 +39,7 @@ def figure5(data: Reproduction) -> Markup:
     """Evolution of the fronts, with the designs of Table 3."""
     fronts: list[Front] = []
     generations = [item for item in data.run.generations() if item.front]
-    for level in (1, 2):
+    for level in LEVEL_NUMBERS:
         own = [item for item in generations if item.level == level]
         if not own:
             continue
@@ -76,10 +77,10 @@ def _resistance(data: Reproduction) -> list[tuple[Look, tuple[ResistancePoint, .
         (look, resistance_points(data.case, evaluation, reference, _ABOVE), evaluation)
         for look, evaluation in _looks(data)
     ]
-    if data.level == 2:
-        evaluation = data.run.initial(1).evaluation
-        if evaluation.level == 1 and evaluation.ok:
-            points = resistance_points(data.case, evaluation, data.references[1], _ABOVE)
+    if level_of(data.level) is TRUTH:
+        evaluation = data.run.initial(FAST.number).evaluation
+        if level_of(evaluation.level) is FAST and evaluation.ok:
+            points = resistance_points(data.case, evaluation, data.references[FAST.number], _ABOVE)
             lines.append((Look("initial, plain Michell (level 1)", "soft", "dot"), points, evaluation))
     return lines
 
@@ -130,7 +131,7 @@ def figure8(data: Reproduction) -> Markup:
         )
         for name, marker in ((paper.INITIAL, "square"), (paper.COMPROMISE, "cross"))
     ]
-    designs = [(look, evaluation) for look, evaluation in _looks(data) if evaluation.open_water is not None]
+    designs = [(look, evaluation) for look, evaluation in _looks(data) if evaluation.ok]
     return chart_html(
         open_water_chart(designs, SHEET, published, required=False),
         "figure-8",

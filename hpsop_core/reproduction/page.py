@@ -7,6 +7,7 @@ import time
 from collections.abc import Sequence
 
 from hpsop_core.case.variables import VARIABLE_TABLE
+from hpsop_core.evaluation.levels import FAST, level_of
 from hpsop_core.markup import Markup, fill, joined, one_line, symbol_html
 from hpsop_core.quantities import change_text, number_text
 from hpsop_core.report.html_page import Section, Words, bullets, page, paragraph, table
@@ -77,7 +78,7 @@ def _head(data: Reproduction) -> Markup:
             f"The paper ran 150 generations of 50; this run has {summary['generations']} of {own.population}, so its "
             "front is only a first impression."
         )
-    if data.level == 1:
+    if level_of(data.level) is FAST:
         banners.append(
             Markup(
                 "Our designs are of <strong>level 1</strong> (Michell, lifting line): the run has not reached level 2."

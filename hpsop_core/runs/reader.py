@@ -13,7 +13,7 @@ from typing import Any
 from hpsop_core.case.case import Case, case_from_toml
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
-from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.result import evaluation_from_dict
 from hpsop_core.optimization.decision import compromise
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.runs.lock import is_being_written
@@ -198,7 +198,7 @@ class RunReader:
                     origin, generation, variables, result = row
                     # Asked after the row: it was written with the first one.
                     dictionary = dictionary or bytes.fromhex(_values(connection)["dictionary"])
-                    evaluation = Evaluation.from_dict(unpack(result, dictionary, variables))
+                    evaluation = evaluation_from_dict(unpack(result, dictionary, variables))
                     self._designs[number] = DesignRecord(number, origin, generation, evaluation)
         return tuple(self._designs[number] for number in ids)
 
@@ -224,10 +224,13 @@ class RunReader:
         Raises:
             InputError: it is not evaluated yet.
         """
-        for number in (level, 3 - level):
-            with contextlib.suppress(InputError):
-                return self.designs([number])[0]
-        raise InputError(f"{self.path}: its initial design is not evaluated yet; let the run go on")
+        with self._reading() as connection:
+            row = connection.execute(
+                "SELECT id FROM evaluations WHERE origin = 'initial' ORDER BY level <> ? LIMIT 1", (level,)
+            ).fetchone()
+        if row is None:
+            raise InputError(f"{self.path}: its initial design is not evaluated yet; let the run go on")
+        return self.designs([int(row[0])])[0]
 
     def front(self, generation: int | None = None) -> tuple[DesignRecord, ...]:
         """The Pareto front of a generation (the last one by default), ascending in f1; empty while there is none."""

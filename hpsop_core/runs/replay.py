@@ -15,6 +15,7 @@ from collections.abc import Callable
 from typing import Any, TypeVar
 
 from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.evaluation.levels import FAST, LEVELS, TRUTH, level_of
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.problem import Candidate, Outcome
 from hpsop_core.optimization.two_level import TwoLevelSearch
@@ -23,14 +24,13 @@ from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.events import RunEvent, RunSnapshot, State
 from hpsop_core.runs.executor import Workers, WorkersUnavailableError
 from hpsop_core.runs.records import variables_text
-from hpsop_core.runs.schema import software_versions
+from hpsop_core.runs.schema import FIRST_SEARCH_ID, initial_id, software_versions
 from hpsop_core.runs.store import RunStore, StoreUnwritableError
 from hpsop_core.runs.tasks import Physics, failure_text, reference_task
 
 _EVENT_INTERVAL = 0.1  # seconds between events about progress within a generation
 _RETRY_INTERVAL = 1.0  # seconds between tries to write to a full disk
 _RECENT = 10  # generations that the estimate of the time left looks back on
-_LEVELS = (1, 2)
 _LEVEL2_SECONDS = 0.3  # an evaluation at level 2, until one is measured: the initial design's finds its hull remembered
 
 _T = TypeVar("_T")
@@ -68,7 +68,7 @@ class RunDriver:
         self._emit = emit
         self._known: dict[tuple[int, str], Outcome] = {}
         self._numbered: dict[tuple[int, str], int] = {}
-        self._next_number = len(_LEVELS) + 1
+        self._next_number = FIRST_SEARCH_ID
         self._references: dict[int, Any] = {}
         self._last_event = 0.0
         self._level2_seconds: float | None = None
@@ -130,15 +130,15 @@ class RunDriver:
             self.snapshot,
             generations=search.generations,
             level=search.level,
-            evaluations=(self._count(1), self._count(2)),
+            evaluations=(self._count(FAST.number), self._count(TRUTH.number)),
             failures=sum(outcome.failed for outcome in self._known.values()),
             elapsed=sum(elapsed for _, elapsed in times),
         )
         self._keep(lambda: store.set_values(state="running", reason=""))
         self._note_versions()
         self._tell("state", state="running", reason="")
-        first, second = (1, 2) if settings.level1_generations > 0 else (2, 1)
-        self._evaluate_initial(first, planned=True)
+        first, second = (FAST, TRUTH) if settings.level1_generations > 0 else (TRUTH, FAST)
+        self._evaluate_initial(first.number, planned=True)
         while True:
             self._extend(search)
             if self._control.stopped and not self._is_known(search):
@@ -149,8 +149,8 @@ class RunDriver:
             self._generation(search, candidates, times)
             if search.number == 1:
                 # Only now: the first front shall be seen before the slower level has been compiled and computed.
-                needed = first == 1 and settings.level1_generations < search.generations
-                self._evaluate_initial(second, planned=needed)
+                needed = first is FAST and settings.level1_generations < search.generations
+                self._evaluate_initial(second.number, planned=needed)
 
     def _is_known(self, search: TwoLevelSearch) -> bool:
         # A stop during the replay waits for its end: that takes seconds, and the snapshot is then worth something.
@@ -215,10 +215,10 @@ class RunDriver:
         """Number a design on its first appearance; False if it has been numbered before."""
         if key in self._numbered:
             return False
-        # The initial design has the numbers 1 and 2 by its level, and keeps them when it is in a population too.
+        # The initial design keeps its own number when it is in a population too.
         level, text = key
         if text == variables_text(self._case.initial.variables):
-            self._numbered[key] = level
+            self._numbered[key] = initial_id(level)
             return True
         self._numbered[key] = self._next_number
         self._next_number += 1
@@ -282,7 +282,7 @@ class RunDriver:
             outcome = self._keep(write, error)
         self._known[candidate.level, variables_text(candidate.variables)] = outcome
         counts = list(self.snapshot.evaluations)
-        counts[candidate.level - 1] += 1
+        counts[LEVELS.index(level_of(candidate.level))] += 1
         self.snapshot = dataclasses.replace(
             self.snapshot,
             done=self.snapshot.done + 1,
@@ -406,19 +406,20 @@ class RunDriver:
         settings = self._case.optimization
         left = search.generations - search.number
         at_level1 = 0
-        if search.level == 1:
+        if level_of(search.level) is FAST:
             level1 = settings.level1_generations
             only_level1 = level1 >= settings.generations
             at_level1 = left if only_level1 else max(0, level1 - search.number)
         seconds = 0.0
-        for level, count in ((1, at_level1), (2, left - at_level1)):
+        for level, count in ((FAST, at_level1), (TRUTH, left - at_level1)):
             if count == 0:
                 continue
-            recent = [elapsed for known_level, elapsed in times if known_level == level][-_RECENT:]
+            recent = [elapsed for known_level, elapsed in times if known_level == level.number][-_RECENT:]
+            estimate = self._level2_estimate() if level is TRUTH else None
             if recent:
                 seconds += count * sum(recent) / len(recent)
-            elif level == 2 and self._level2_estimate() is not None:
-                seconds += count * (self._level2_estimate() or 0.0)
+            elif estimate is not None:
+                seconds += count * estimate
             else:
                 return None
         return seconds
@@ -426,7 +427,7 @@ class RunDriver:
     def _level2_estimate(self) -> float | None:
         """Seconds a generation at level 2, before there is one."""
         if self._level2_seconds is None and self._workers is not None:
-            elapsed = self._store.elapsed_of(2)
+            elapsed = self._store.elapsed_of(initial_id(TRUTH.number))
             if elapsed is not None:
                 typical = max(elapsed, _LEVEL2_SECONDS)
                 self._level2_seconds = typical * self._case.optimization.population / self._workers.slots

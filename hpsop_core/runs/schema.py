@@ -14,13 +14,29 @@ from hpsop_core.errors import InputError
 APPLICATION_ID = 0x48505350
 """Stands in the file's header, so that any tool can tell a run file from another SQLite file ("HPSP")."""
 
-SCHEMA_VERSION = 2
+SCHEMA_VERSION = 3
 
 HAND_IDS_BEGIN = 1_000_000_001
 """Ids of designs made by hand begin here: the search's own ids count from 1 in the order asked, come what may."""
 
+
+def initial_id(level: int) -> int:
+    """The id that a run gives the initial design at a level (1 or 2), before the search's own ids begin.
+
+    For the writer, who numbers designs. Readers ask for the design of the origin "initial" instead.
+    """
+    return level
+
+
+FIRST_SEARCH_ID = 3
+"""Ids of the search's own designs begin after the initial design's."""
+
 # How to lift a file from an older schema, by the version it has. Version 1 was never published.
-MIGRATIONS: dict[int, str] = {}
+MIGRATIONS: dict[int, str] = {
+    # 3 keeps more of the initial design's numbers in a reference. An old reference stays as it is: whoever reads it
+    # knows the three numbers that it has.
+    2: "SELECT 1",
+}
 
 _TABLES = """
 CREATE TABLE run (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;

@@ -19,7 +19,7 @@ import threadpoolctl
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import SolverFailure
-from hpsop_core.evaluation.result import Evaluation, failed_evaluation
+from hpsop_core.evaluation.result import Evaluation, Failed
 from hpsop_core.runs.records import json_text
 
 EvaluateFunction: TypeAlias = Callable[[Case, DesignVariables, int, Any], Evaluation]
@@ -83,7 +83,7 @@ def evaluation_task(
 
 def failure_text(case: Case, variables: DesignVariables, level: int, stage: str, reason: str, elapsed: float) -> str:
     """The JSON text of a failed evaluation."""
-    return json_text(failed_evaluation(case.name, variables, level, stage, reason, elapsed).as_dict())
+    return json_text(Failed(case.name, level, variables, stage, reason, elapsed).as_dict())
 
 
 def reference_task(reference_for: ReferenceFunction, case: Case, level: int) -> tuple[bool, str]:

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from hpsop_core import evaluate, load_case
-from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.result import evaluation_from_dict
 from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
 from hpsop_core.hydro.blade_panels.settings import BladePanelSettings
 from hpsop_core.hydro.blade_panels.solver import solve
@@ -94,5 +94,5 @@ def test_level_2_evaluations_carry_it_beside_kellers_criterion() -> None:
     # Keller asks for .57 and .99 of the area at the two speeds: the second must cavitate far more
     assert service.required_expanded_area_ratio < 0.607 < trial.required_expanded_area_ratio
     assert (trial.blade_cavitating_share or 0.0) > 2.0 * (service.blade_cavitating_share or 0.0)
-    assert Evaluation.from_dict(result.as_dict()) == result
+    assert evaluation_from_dict(result.as_dict()) == result
     assert evaluate(case, level=1).conditions[0].blade_cavitation_margin is None

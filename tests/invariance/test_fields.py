@@ -10,7 +10,7 @@ from hpsop_core.case.case import Case, load_case
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.fields import PressureField, blade_pressure, hull_pressure, pressures, waves
-from hpsop_core.evaluation.result import Evaluation, failed_evaluation
+from hpsop_core.evaluation.result import Failed, Ok
 from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.geometry.clearance import propeller_placement
 from hpsop_core.hydro.cavitation import pressure_margin
@@ -26,7 +26,7 @@ def case() -> Case:
 
 
 @pytest.fixture(scope="module")
-def initial(case: Case) -> Evaluation:
+def initial(case: Case) -> Ok:
     return evaluate(case)
 
 
@@ -36,9 +36,8 @@ def _areas(field: PressureField) -> Array:
     return np.asarray(0.5 * np.cross(c - a, d - b))
 
 
-def test_the_waves_of_level_1_carry_the_evaluations_wave_resistance(case: Case, initial: Evaluation) -> None:
+def test_the_waves_of_level_1_carry_the_evaluations_wave_resistance(case: Case, initial: Ok) -> None:
     hull = initial.hull
-    assert hull is not None
     for index, condition in enumerate(initial.conditions):
         field = waves(case, initial, condition=index)
         assert field.spectrum is not None
@@ -52,7 +51,7 @@ def test_they_stand_in_the_python_interface() -> None:
     assert hpsop_core.pressures is pressures
 
 
-def test_a_design_is_an_evaluation_variables_or_the_initial_one(case: Case, initial: Evaluation) -> None:
+def test_a_design_is_an_evaluation_variables_or_the_initial_one(case: Case, initial: Ok) -> None:
     by_evaluation = waves(case, initial, condition=1)
     for other in (
         waves(case, initial.variables, level=1, condition=1),
@@ -63,7 +62,7 @@ def test_a_design_is_an_evaluation_variables_or_the_initial_one(case: Case, init
         assert other.wave_calibration == by_evaluation.wave_calibration
 
 
-def test_the_blades_pressure_gives_the_evaluations_thrust(case: Case, initial: Evaluation) -> None:
+def test_the_blades_pressure_gives_the_evaluations_thrust(case: Case, initial: Ok) -> None:
     condition = initial.conditions[0]
     field = blade_pressure(case, initial)
     forces = -_areas(field) * field.pressure[:, None]
@@ -82,7 +81,6 @@ def test_the_blades_pressure_gives_the_evaluations_thrust(case: Case, initial: E
     assert field.dynamic_pressure.max() < 0.5 * case.constants.density * tip**2
     # the cavitation number's own reference: P0 - Pv over it is that number
     hull, constants = initial.hull, case.constants
-    assert hull is not None and initial.propeller is not None
     immersion = hull.draft - initial.propeller.shaft_height
     margin = pressure_margin(
         immersion,
@@ -95,7 +93,7 @@ def test_the_blades_pressure_gives_the_evaluations_thrust(case: Case, initial: E
     assert field.uniform_coefficient * field.reference_pressure == pytest.approx(field.pressure)
 
 
-def test_the_blades_turn_in_the_aperture(case: Case, initial: Evaluation) -> None:
+def test_the_blades_turn_in_the_aperture(case: Case, initial: Ok) -> None:
     field = blade_pressure(case, initial)
     place = propeller_placement(design_hull(case, initial.variables), design_propeller(case, initial.variables))
     blades = field.points[np.unique(field.quads[field.blade >= 0])] - place[:3, 3]
@@ -104,9 +102,8 @@ def test_the_blades_turn_in_the_aperture(case: Case, initial: Evaluation) -> Non
     assert set(field.blade) == {-1, *range(initial.variables.blade_count)}
 
 
-def test_the_hulls_panels_are_its_surface(case: Case, initial: Evaluation) -> None:
+def test_the_hulls_panels_are_its_surface(case: Case, initial: Ok) -> None:
     hull = initial.hull
-    assert hull is not None
     field = hull_pressure(case, initial)
     area = _areas(field)
     # flat panels under the surface of the form
@@ -120,7 +117,7 @@ def test_the_hulls_panels_are_its_surface(case: Case, initial: Evaluation) -> No
     assert field.pressure == pytest.approx(0.5 * case.constants.density * speed**2 * field.pressure_coefficient)
 
 
-def test_both_pressures_are_the_two_alone(case: Case, initial: Evaluation) -> None:
+def test_both_pressures_are_the_two_alone(case: Case, initial: Ok) -> None:
     both = pressures(case, initial, condition=1)
     assert np.array_equal(
         both.hull.pressure_coefficient, hull_pressure(case, initial, condition=1).pressure_coefficient
@@ -130,13 +127,13 @@ def test_both_pressures_are_the_two_alone(case: Case, initial: Evaluation) -> No
     )
 
 
-def test_what_is_not_there_is_refused(case: Case, initial: Evaluation) -> None:
+def test_what_is_not_there_is_refused(case: Case, initial: Ok) -> None:
     for condition in (-1, 2):
         with pytest.raises(InputError, match="numbered from 0"):
             waves(case, initial, condition=condition)
     with pytest.raises(InputError, match="neither 1 nor 2"):
         waves(case, initial, level=3)
-    failed = failed_evaluation(case.name, initial.variables, 1, "hull", "the form cannot be made")
+    failed = Failed(case.name, 1, initial.variables, "hull", "the form cannot be made")
     with pytest.raises(SolverFailure, match="the form cannot be made"):
         waves(case, failed)
     with pytest.raises(SolverFailure, match="the form cannot be made"):

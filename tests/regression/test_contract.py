@@ -9,7 +9,7 @@ import pytest
 
 from hpsop_core import evaluate, load_case
 from hpsop_core.cli.main import build_parser, main
-from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.result import evaluation_from_dict
 
 KEYS = {
     "": {"case", "level", "status", "reason", "variables", "hull", "propeller", "conditions", "objectives",
@@ -68,7 +68,7 @@ def test_evaluate(capsys: pytest.CaptureFixture[str]) -> None:
     assert document["propeller"]["blade_count"] == 4
     assert document["constraints"]["cavitation"] is None  # the paper applies Keller at level 2 only
     assert {"booked_block_coefficient", "booked_volume"} <= set(document["hull"])
-    assert Evaluation.from_dict(document).as_dict() == document
+    assert evaluation_from_dict(document).as_dict() == document
     lengths = {len(values) for values in document["open_water"].values()}
     assert len(lengths) == 1
     assert lengths.pop() > 10
@@ -89,7 +89,7 @@ def test_keys_of_a_later_version_are_left_alone(capsys: pytest.CaptureFixture[st
     later["propeller"] = {**document["propeller"], "noise": 1.0}
     later["conditions"] = [{**condition, "added_resistance": 1.0} for condition in document["conditions"]]
     later["open_water"] = {**document["open_water"], "slip": [0.0]}
-    assert Evaluation.from_dict(later).as_dict() == document
+    assert evaluation_from_dict(later).as_dict() == document
 
 
 def test_resistance(capsys: pytest.CaptureFixture[str]) -> None:

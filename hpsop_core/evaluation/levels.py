@@ -1,0 +1,144 @@
+"""The two levels of fidelity: each is a solver of waves and a solver of propellers."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+from typing import TYPE_CHECKING
+
+from hpsop_core.errors import InputError, SolverFailure
+
+# Solvers are loaded when they are needed: those of the true level take a second to load their compiled kernels, and
+# whoever only needs to know what levels there are shall not load any.
+if TYPE_CHECKING:
+    from hpsop_core.geometry.hull.hull import Hull
+    from hpsop_core.geometry.propeller.propeller import Propeller
+    from hpsop_core.hydro.blade_panels.pressure import BladePressureTable
+    from hpsop_core.hydro.open_water import OpenWater, SectionDrag
+    from hpsop_core.typing_aliases import Array
+
+
+@dataclass(frozen=True)
+class WaveAnswer:
+    """A solver's answer at one Froude number.
+
+    Attributes:
+        wave_coefficient: Rw over 1/2 rho V^2 S, S the design's own static wetted surface.
+        wave_coefficient_pressure: level 2's cross-check, else None.
+        sinkage: level 2, in m, positive down; trim: in rad, positive bow down; else None.
+        warnings: what the solver says about its answers, one line each.
+    """
+
+    wave_coefficient: float
+    wave_coefficient_pressure: float | None = None
+    sinkage: float | None = None
+    trim: float | None = None
+    warnings: tuple[str, ...] = ()
+
+
+@dataclass(frozen=True)
+class PropellerSolution:
+    """What a level's solver gives for a propeller.
+
+    Attributes:
+        open_water: at the advance coefficients asked for.
+        pressures: gives the pressures on the blades; None for a solver that knows none.
+    """
+
+    open_water: OpenWater
+    pressures: Callable[[], BladePressureTable] | None = None
+
+
+@dataclass(frozen=True)
+class Level:
+    """A level of fidelity.
+
+    Attributes:
+        number: as people write it.
+        words: its two solvers.
+        solve_waves: (hull, Froude numbers) -> an answer at each, before any calibration; raises SolverFailure.
+        solve_propeller: (propeller, advance coefficients, section drag) -> its solution; raises SolverFailure.
+        caution: what a reader must know of results that all have this level; "" for the true one.
+        is_calibrated: whether a case may scale its wave resistance to the true level's at the initial design.
+    """
+
+    number: int
+    words: str
+    caution: str
+    solve_waves: Callable[[Hull, Sequence[float]], tuple[WaveAnswer, ...]]
+    solve_propeller: Callable[[Propeller, Array, SectionDrag], PropellerSolution]
+    is_calibrated: bool
+
+
+def _thin_ship(hull: Hull, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:
+    from hpsop_core.hydro import michell
+
+    table = hull.offset_table()
+    coefficients = michell.wave_coefficients(
+        table.x, table.z, table.y, hull.length, hull.hydrostatics.wetted_surface, froude_numbers
+    )
+    return tuple(WaveAnswer(float(value)) for value in coefficients)
+
+
+def _lifting_line(propeller: Propeller, advance: Array, drag: SectionDrag) -> PropellerSolution:
+    from hpsop_core.hydro.lifting_line import solver as lifting_line
+
+    return PropellerSolution(lifting_line.solve(propeller, advance, drag))
+
+
+def _rankine_panels(hull: Hull, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:
+    from hpsop_core.hydro.rankine import solver as rankine
+
+    try:
+        result = rankine.solve(hull, froude_numbers)
+    except InputError as problem:
+        # Froude numbers follow from a design's length at fixed speed: out of range is that design's failure.
+        raise SolverFailure("rankine", str(problem)) from problem
+    return tuple(
+        WaveAnswer(point.wave_coefficient, point.wave_coefficient_pressure, point.sinkage, point.trim, result.warnings)
+        for point in result.conditions
+    )
+
+
+def _blade_panels(propeller: Propeller, advance: Array, drag: SectionDrag) -> PropellerSolution:
+    from hpsop_core.hydro.blade_panels import solver as blade_panels
+
+    panels = blade_panels.solve(propeller, advance, drag)
+    return PropellerSolution(panels.open_water, panels.pressure_table)
+
+
+FAST = Level(
+    number=1,
+    words="Michell's thin-ship integral and a lifting line",
+    caution="Its ranking of similar hulls is useful; its absolute wave resistance is only as good as its calibration. "
+    "Let the run reach level 2 before deciding anything.",
+    solve_waves=_thin_ship,
+    solve_propeller=_lifting_line,
+    is_calibrated=True,
+)
+"""Searches wide."""
+
+TRUTH = Level(
+    number=2,
+    words="Rankine panels on hull and water surface, panels on blades and hub",
+    caution="",
+    solve_waves=_rankine_panels,
+    solve_propeller=_blade_panels,
+    is_calibrated=False,
+)
+"""What a front is judged by."""
+
+LEVELS = (FAST, TRUTH)
+LEVEL_NUMBERS = tuple(level.number for level in LEVELS)
+
+
+def level_of(number: int) -> Level:
+    """The level of a number.
+
+    Raises:
+        ValueError: there is no such level.
+    """
+    for level in LEVELS:
+        if level.number == number:
+            return level
+    raise ValueError(f"level {number} is neither {FAST.number} nor {TRUTH.number}")
