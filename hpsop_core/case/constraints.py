@@ -71,8 +71,9 @@ def _cavitation(design: DesignNumbers, initial: InitialNumbers, case: Case) -> f
 
 def _cavitation_asked(case: Case) -> str:
     limits = case.constraints
-    where = "" if limits.g3_level == 1 else ", at level 2 only: the search at level 1 does not see cavitation"
-    return f"expanded area ratio at least Keller's with K = {limits.keller_k:.2f} at the first condition{where}"
+    both = limits.g3_level == 1
+    where = "at both levels" if both else "at level 2 only: the search at level 1 does not see cavitation"
+    return f"expanded area ratio at least Keller's with K = {limits.keller_k:.2f} at the first condition, {where}"
 
 
 def _form(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float:

@@ -108,7 +108,8 @@ def _head(data: ReportData, summary: dict[str, object]) -> Markup:
         parts.append(paragraph(words, "banner"))
     if data.level is not None and level_of(data.level).caution:
         words = fill(
-            "All results are of <strong>level {}</strong>, the fast and rough one; see “How far to trust these numbers”.",
+            "All results are of <strong>level {}</strong>, the fast and rough one; see “How far to trust these "
+            "numbers”.",
             data.level,
         )
         parts.append(paragraph(words, "banner"))

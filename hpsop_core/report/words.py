@@ -61,8 +61,8 @@ def assumptions(case: Case) -> Markup:
         fill("<strong>Hull form</strong> ({}): {}", hull.form, _FORM[hull.form]),
         fill("<strong>Speed</strong> ({}): {}", case.conditions.speed, _SPEED[case.conditions.speed]),
         fill(
-            "<strong>Level {}</strong> (fast): {}. <strong>Level {}</strong> (slow, better): {}. Friction by ITTC-57 at "
-            "both.",
+            "<strong>Level {}</strong> (fast): {}. <strong>Level {}</strong> (slow, better): {}. Friction by ITTC-57 "
+            "at both.",
             FAST.number,
             FAST.words,
             TRUTH.number,
