@@ -17,6 +17,7 @@ from hpsop_core.typing_aliases import Array
 
 _FROUDE_RANGE = (0.16, 0.3)
 _HIGHEST = 1.4
+_FEW = 2
 _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 Curves = tuple[Array, Array, Array, Array]
 WAITING = "computing …"
@@ -151,13 +152,17 @@ def thrust_chart(
             title = f"{look.name}, condition {number}: T {1e-3 * condition.thrust:,.0f} kN at {rate}"
             plot.mark(condition.froude_number, 1e-6 * condition.thrust, "circle", 3.6, look.role, title=title)
             within = np.flatnonzero(np.isfinite(force) & (force < 0.93 * top))
-            if (main or len(designs) <= 2) and within.size:
+            if main and within.size:
                 # below its falling end it crosses nothing of its own
                 last = within[-1]
                 at = (float(froude[last]), float(force[last]))
                 plot.text(*at, f"n_{number} = {rate}", look.role, "end", dy=1.3 * sheet.style.note)
-    if designs:
+    if len(designs) > _FEW:
         plot.line([], [], "soft dot thin", key="available at each condition's n")
+    else:
+        for look, _, evaluation in designs:
+            rates = ", ".join(f"{condition.rotation_rate_rpm:.1f}" for condition in evaluation.conditions)
+            plot.line([], [], f"{look.role} dot thin", key=f"available at {rates} rpm, {look.name}")
     draw_published(plot, published)
     return plot
 
