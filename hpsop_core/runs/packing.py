@@ -1,6 +1,6 @@
 """How an evaluation's JSON is kept in a run file: its numbers as they are in memory, its words once.
 
-A run of 7,500 evaluations holds some 150 numbers each; as plain JSON that is 42 MB, packed it is 10. What is stored is
+A run of 7,500 evaluations holds some 150 numbers each; as plain JSON that is 42 MB, packed it is 11. What is stored is
 read back to the last bit. The first evaluation of a run is its dictionary: the words, and the numbers that never
 change, cost nothing from then on.
 """
