@@ -1,4 +1,4 @@
-"""A search with an objective of one's own: transport work, the power that a tonne of displacement costs at its speed.
+"""A search with an objective of one's own: transport work, delivered power over weight times speed.
 
     python examples/own_objective.py [--generations 12] [--population 16]
 
