@@ -88,7 +88,7 @@ def serve(folder: Path, port: int) -> None:
     explorer = Explorer(case, port=port, folder=folder, workers=2)
     signal.signal(signal.SIGTERM, lambda *_: explorer._gone.set())
     signal.signal(signal.SIGUSR1, lambda *_: threading.Thread(target=drag, args=(explorer,)).start())
-    print("ready", flush=True)
+    print(explorer.address, flush=True)
     explorer.wait()
     explorer.close()
 
@@ -214,9 +214,9 @@ def usable(browser: Any) -> None:
                 text=True,
             )
             assert server.stdout is not None
-            server.stdout.readline()
+            address = server.stdout.readline().split()[2]
             printed = time.perf_counter() - began
-            with opened(browser, f"http://127.0.0.1:{port}"):
+            with opened(browser, address):
                 found.append((time.perf_counter() - began, printed))
             server.terminate()
             server.wait()
@@ -339,8 +339,8 @@ def main() -> None:
                     text=True,
                 )
                 assert server.stdout is not None
-                server.stdout.readline()
-                with opened(browser, f"http://127.0.0.1:{port}") as page:
+                address = server.stdout.readline().strip()
+                with opened(browser, address) as page:
                     # the first mesh stalls software graphics for seconds
                     time.sleep(10.0)
                     visitor = Visitor(page)

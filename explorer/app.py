@@ -20,7 +20,9 @@ from typing import Any
 import viser
 
 from explorer.layout import build_session, build_shared
-from explorer.server.security import free_port, secure_server
+from explorer.server.access import Access, origin_of
+from explorer.server.security import address_of, free_port, secure_server
+from explorer.server.token import door, token_of
 from explorer.server.worker import LatestWorker
 from explorer.services.library import RunLibrary, runs_folder
 from explorer.services.page_memory import PageMemory, remembered
@@ -49,6 +51,10 @@ class Explorer:
         folder: of the user's runs.
         workers: processes of a run.
         restored: what the settings were when the server last stopped (``remembered``), if they are to come back.
+        origins: Origins of pages that may drive this one beside its own (``origin_of``).
+
+    Attributes:
+        address: what opens the page, with its token.
 
     Raises:
         InputError: the run file or the address cannot be used.
@@ -64,9 +70,11 @@ class Explorer:
         folder: Path | None = None,
         workers: int | None = None,
         restored: Mapping[str, Any] | None = None,
+        origins: Sequence[str] = (),
     ) -> None:
         self.folder = folder or runs_folder()
-        self.address = f"http://{'localhost' if host in ('0.0.0.0', '::') else host}:{port}"
+        token = token_of(self.folder)
+        self.address = address_of(host, port, token)
         draft = Draft(case)
         draft.begin(case)
         if restored is not None:
@@ -79,7 +87,8 @@ class Explorer:
         self.services = open_services(self.state, RunLibrary(self.folder), workers)
         if run is not None:
             self.services.runs.open(run, read_only)
-        self.server = secure_server(host, port, "hpsop")
+        self.access = Access(token, origins)
+        self.server = secure_server(host, port, "hpsop", self.access)
         self.state.hub.on(("draft",), self.services.runs.draft_changed)
         self.state.on_remember = lambda: worker.latest("memory", self._save_memory)
         # the run on display and the settings come back too
@@ -192,6 +201,14 @@ def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     )
     parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: this machine only)")
     parser.add_argument("--port", type=int, default=8080, help="port (default 8080; the next free one if it is busy)")
+    parser.add_argument(
+        "--allow-origin",
+        nargs="+",
+        action="extend",
+        default=[],
+        metavar="URL",
+        help="addresses of a proxy of yours through which the page is opened, as https://host",
+    )
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
     parser.add_argument("--workers", type=int, default=None, help="processes of a run (default: all cores)")
     return parser.parse_args(argv)
@@ -204,6 +221,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         arguments = _arguments(argv)
         if arguments.workers is not None and arguments.workers < 1:
             raise InputError(f"--workers {arguments.workers}: give 1 or more")
+        origins = [origin_of(text) for text in arguments.allow_origin]
         folder = runs_folder()
         opening = _chosen(arguments.what, folder)
         port = free_port(arguments.host, arguments.port)
@@ -216,6 +234,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             folder,
             arguments.workers,
             opening.restored,
+            origins,
         )
     except HpsopError as error:
         sys.stderr.write(f"{error}\n")
@@ -223,15 +242,19 @@ def main(argv: Sequence[str] | None = None) -> int:
     if port != arguments.port:
         sys.stderr.write(f"port {arguments.port} is busy; using {port}\n")
     if arguments.host not in ("127.0.0.1", "localhost", "::1"):
-        sys.stderr.write("anyone who reaches this address can drive the page: there is no password\n")
+        sys.stderr.write(
+            "others on the network can drive the page if they learn its token, which travels unencrypted: "
+            "a tunnel (ssh -L) is safer\n"
+        )
     sys.stdout.write(f"hpsop explorer: {explorer.address}   (Ctrl-C ends it)\n")
     sys.stdout.flush()
     signal.signal(signal.SIGTERM, lambda *_: explorer._gone.set())
-    if not arguments.no_browser:
-        with contextlib.suppress(webbrowser.Error):
-            webbrowser.open(explorer.address)
     try:
-        explorer.wait()
+        with contextlib.nullcontext() if arguments.no_browser else door(folder, explorer.address) as entrance:
+            if entrance is not None:
+                with contextlib.suppress(webbrowser.Error):
+                    webbrowser.open(entrance)
+            explorer.wait()
     except KeyboardInterrupt:
         sys.stderr.write("\n")
     finally:

@@ -1,10 +1,11 @@
 """A viser server that only its own user can drive.
 
-viser 1.1.1 by default binds every interface, accepts any Origin (so any web page the user has open could press our
-buttons), may be framed by any page (so a page could lay itself over our buttons and steal the clicks), hands out public
-share tunnels to whoever asks, and silently takes the next port when one is busy. Here the port is chosen and known
-before the server starts, foreign Origins are refused by the WebSocket handshake, no other page may frame this one, and
-the share tunnel is off. What a browser that was let in may say is explorer/server/guard.py's matter.
+viser 1.1.1 by default binds every interface, answers whoever comes, from any Origin (so every account of the machine,
+and any web page the user has open, could press our buttons), may be framed by any page (so a page could lay itself over
+our buttons and steal the clicks), hands out public share tunnels to whoever asks, and silently takes the next port when
+one is busy. Here the port is chosen and known before the server starts, every request is judged by
+explorer/server/access.py, and the share tunnel is off. What a browser that was let in may say is
+explorer/server/guard.py's matter.
 
 This leans on private facts of viser 1.1.1: it reads ``websockets.asyncio.server.serve`` at start and passes it
 ``process_request``. The version is pinned and tests/faults/test_page_guard.py fails when these facts change.
@@ -16,13 +17,13 @@ import contextlib
 import io
 import ipaddress
 import socket
-from collections.abc import Sequence
 from typing import Any
 
 import viser
 import websockets.asyncio.server as websocket_server
 from viser import _messages
 
+from explorer.server.access import Access
 from hpsop_core.errors import InputError
 
 _PORTS_TO_TRY = 50
@@ -56,31 +57,23 @@ def free_port(host: str, port: int) -> int:
     raise InputError(f"--port {port}: no free port up to {port + _PORTS_TO_TRY - 1}; name another")
 
 
-def allowed_origins(host: str, port: int) -> list[str]:
-    """Origins a browser may come from: loopback, and the host's own names when it serves a network."""
-    names = {"localhost", "127.0.0.1"}
+def address_of(host: str, port: int, token: str) -> str:
+    """What to open in a browser of this machine for a server on ``host`` (of any machine, when it is a name)."""
     try:
-        wildcard = ipaddress.ip_address(host).is_unspecified
+        number = ipaddress.ip_address(host)
     except ValueError:
-        wildcard = False
-    if wildcard:
-        own_name = socket.gethostname()
-        names.update({own_name, socket.getfqdn()})
-        with contextlib.suppress(OSError):
-            names.update(str(info[4][0]) for info in socket.getaddrinfo(own_name, None))
+        name = host
     else:
-        names.add(host)
-    return sorted(f"http://{f'[{name}]' if ':' in name else name}:{port}" for name in names)
+        name = "localhost" if number.is_unspecified else f"[{host}]" if number.version == 6 else host
+    return f"http://{name}:{port}/?token={token}"
 
 
-def secure_server(host: str, port: int, label: str, origins: Sequence[str] | None = None) -> viser.ViserServer:
-    """Start viser on exactly this host and port, open to these Origins only, without share tunnels."""
-    accepted = list(allowed_origins(host, port) if origins is None else origins)
+def secure_server(host: str, port: int, label: str, access: Access) -> viser.ViserServer:
+    """Start viser on exactly this host and port, open to whom ``access`` lets in, without share tunnels."""
     serve = websocket_server.serve
 
     def guarded_serve(*arguments: Any, **settings: Any) -> Any:
-        settings["origins"] = accepted
-        settings["process_request"] = _unframed(settings.get("process_request"))
+        settings["process_request"] = access.judged(settings["process_request"])
         return serve(*arguments, **settings)
 
     websocket_server.serve = guarded_serve  # type: ignore[assignment, misc]
@@ -97,21 +90,6 @@ def secure_server(host: str, port: int, label: str, origins: Sequence[str] | Non
     for kind in (_messages.ShareUrlRequest, _messages.ShareUrlDisconnect):
         server._websock_server.unregister_handler(kind)
     return server
-
-
-def _unframed(answer: Any) -> Any:
-    """The same HTTP answers, with the headers that forbid other pages to frame them."""
-    if answer is None:
-        return None
-
-    def framed_by_nobody(connection: Any, request: Any) -> Any:
-        response = answer(connection, request)
-        if response is not None:
-            response.headers["Content-Security-Policy"] = "frame-ancestors 'none'"
-            response.headers["X-Content-Type-Options"] = "nosniff"
-        return response
-
-    return framed_by_nobody
 
 
 def _refuse_share(*_args: Any, **_kwargs: Any) -> None:

@@ -22,20 +22,22 @@ class Command:
 
     def __init__(self, folder: Path, port: int) -> None:
         self._folder = folder
-        self._port = port
-        self.address = f"http://127.0.0.1:{port}"
+        self.port = port
+        self.address = ""
         self.process: subprocess.Popen[str] | None = None
 
     def start(self, *arguments: str) -> str:
         """Start it and wait for the line that names the address."""
         self.process = subprocess.Popen(
-            [BIN / "hpsop-explore", *arguments, "--no-browser", "--port", str(self._port)],
+            [BIN / "hpsop-explore", *arguments, "--no-browser", "--port", str(self.port)],
             env={**os.environ, "HPSOP_RUNS": str(self._folder)},
             stdout=subprocess.PIPE,
             text=True,
         )
         assert self.process.stdout is not None
-        return self.process.stdout.readline()
+        line = self.process.stdout.readline()
+        self.address = line.split()[2]
+        return line
 
     def kill(self) -> None:
         """As a crash would."""
@@ -89,7 +91,7 @@ def generation(page) -> int:
 @pytest.fixture(scope="module")
 def page(chromium, command, writer):
     line = command.start(str(writer.run))
-    assert command.address in line
+    assert line.startswith(f"hpsop explorer: http://127.0.0.1:{command.port}/?token=")
     context = chromium.new_context(viewport={"width": 1200, "height": 700})
     opened = context.new_page()
     opened.set_default_timeout(PATIENCE)

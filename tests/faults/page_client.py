@@ -1,0 +1,61 @@
+"""Programs that speak to the page as a browser does: with its token, or without."""
+
+from __future__ import annotations
+
+import http.client
+import socket
+from urllib.parse import urlsplit
+
+import viser
+from websockets.sync.client import ClientConnection, connect
+
+from explorer.app import Explorer
+
+
+def token_of_address(address: str) -> str:
+    """The secret at the end of an address."""
+    return urlsplit(address).query.removeprefix("token=")
+
+
+def connect_as(
+    explorer: Explorer,
+    origin: str | None,
+    token: str | None = None,
+    host: str | None = None,
+    cookie: str | None = None,
+) -> ClientConnection:
+    """Open the page's WebSocket.
+
+    Args:
+        explorer: whose.
+        origin: of the page that asks.
+        token: in the address; the right one unless told.
+        host: what the address names (a tunnel's or proxy's), unless it is the server's own.
+        cookie: the Cookie header.
+    """
+    port = int(explorer.server.get_port())
+    query = token_of_address(explorer.address) if token is None else token
+    headers = {} if cookie is None else {"Cookie": cookie}
+    uri = f"ws://{host or f'127.0.0.1:{port}'}"
+    # whatever end of a tunnel the address names, the connection goes to the server
+    wire = socket.create_connection(("127.0.0.1", port), timeout=20)
+    return connect(
+        uri + (f"/?token={query}" if query else "/"),
+        origin=origin,  # type: ignore[arg-type]
+        subprotocols=[f"viser-v{viser.__version__}"],  # type: ignore[list-item]
+        additional_headers=headers,
+        compression=None,
+        max_size=None,
+        sock=wire,
+    )
+
+
+def fetch(explorer: Explorer, path: str, **headers: str) -> tuple[int, dict[str, str], bytes]:
+    """Status, headers (names in lower case) and body of one answer; no redirect is followed."""
+    connection = http.client.HTTPConnection("127.0.0.1", int(explorer.server.get_port()), timeout=20)
+    try:
+        connection.request("GET", path, headers=headers)
+        answer = connection.getresponse()
+        return answer.status, {name.lower(): value for name, value in answer.getheaders()}, answer.read()
+    finally:
+        connection.close()
