@@ -1,7 +1,8 @@
 """Between viser and the page: everything that leans on private facts of this very viser.
 
 A file for a thought: ``security`` (a server that only its own user can drive), ``token`` (the secret in its address),
-``access`` (who may open it, and what the refused are told), ``notices`` (what the terminal hears of that), ``guard`` (what a browser may say to a
-widget), ``bridge`` (gestures on charts, told to Python), ``html_slot`` (the one door by which HTML goes to a browser),
-``widgets`` (values set from Python), ``worker`` (a thread that always does the newest thing asked for).
+``access`` (who may open it, and what the refused are told), ``notices`` (what the terminal hears of that), ``guard``
+(what a browser may say to a widget), ``bridge`` (gestures on charts, told to Python), ``html_slot`` (the one door by
+which HTML goes to a browser), ``widgets`` (values set from Python), ``worker`` (a thread that always does the newest
+thing asked for).
 """
