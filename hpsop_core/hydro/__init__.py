@@ -6,5 +6,6 @@
 * lifting_line, blade_panels: a folder each: the propeller's levels 1 and 2
 * interaction, operating_point, cavitation: hull and propeller together: wake and thrust deduction, the J at which the
   thrust is met, Keller's criterion
+* holtrop: the same by Holtrop and Mennen's regression; powering: the parts of the resistance, efficiencies, powers
 * singularities: a folder: the elementary kernels of all panel and vortex methods, which import nothing of the project
 """
