@@ -39,6 +39,9 @@ SECTIONS: dict[str, type[Any]] = {
 }
 _TEXTS = ("name", "title", "description")
 
+KNOT = 1852.0 / 3600.0
+"""In m/s."""
+
 
 @dataclass(frozen=True)
 class Case:
@@ -65,18 +68,38 @@ class Case:
     optimization: OptimizationSection = field(default_factory=OptimizationSection)
 
     def __post_init__(self) -> None:
-        constants = self.constants
-        if constants.wave_calibration == "stated" and len(constants.stated_wave_coefficients) != len(
-            self.conditions.froude_numbers
-        ):
+        constants, count = self.constants, len(self.conditions.weights)
+        if constants.wave_calibration == "stated" and len(constants.stated_wave_coefficients) != count:
             raise InputError(
-                f"constants: wave_calibration = stated needs {len(self.conditions.froude_numbers)} "
-                f"stated_wave_coefficients, one a condition; {len(constants.stated_wave_coefficients)} given"
+                f"constants: wave_calibration = stated needs {count} stated_wave_coefficients, one a condition; "
+                f"{len(constants.stated_wave_coefficients)} given"
             )
+        _check_speeds(self.conditions.speeds_knots, self._wave_speed)
         limits = self.constraints
         if limits.diameter_to_draft_lower > limits.diameter_to_draft_upper:
             raise InputError("constraints: diameter_to_draft_lower exceeds diameter_to_draft_upper; swap them")
         _ = self.initial.variables  # refuses proportions that no design may have
+
+    @property
+    def froude_numbers(self) -> tuple[float, ...]:
+        """V/sqrt(g Lpp) of the initial design at each condition."""
+        if not self.conditions.speeds_knots:
+            return self.conditions.froude_numbers
+        return tuple(speed / self._wave_speed for speed in self.speeds)
+
+    @property
+    def speeds(self) -> tuple[float, ...]:
+        """Of the initial design at each condition, in m/s."""
+        conditions = self.conditions
+        if conditions.speeds_knots:
+            return tuple(speed * KNOT for speed in conditions.speeds_knots)
+        return tuple(number * self._wave_speed for number in conditions.froude_numbers)
+
+    @property
+    def _wave_speed(self) -> float:
+        """sqrt(g Lpp) of the initial design in m/s."""
+        speed: float = (self.constants.gravity * self.initial.length) ** 0.5
+        return speed
 
     def to_toml(self) -> str:
         """The case as TOML, every field stated; ``case_from_toml`` gives the same case again."""
@@ -94,11 +117,16 @@ class Case:
             InputError: an unknown field or a refused value.
         """
         known = rules(SECTIONS[section])
-        checked = {}
+        checked: dict[str, Any] = {}
         for name, value in changes.items():
             if name not in known:
                 raise unknown_name(name, list(known), section)
             checked[name] = checked_value(value, known[name], f"{section}: {name}")
+        if section == "conditions":
+            # Speeds are stated in one way: whoever states them in the other one takes the first away.
+            for stated, other in (("froude_numbers", "speeds_knots"), ("speeds_knots", "froude_numbers")):
+                if checked.get(stated) and other not in checked:
+                    checked[other] = ()
         return dataclasses.replace(self, **{section: dataclasses.replace(getattr(self, section), **checked)})
 
     def with_bounds(self, bounds: Mapping[str, tuple[float, float]]) -> Case:
@@ -108,6 +136,18 @@ class Case:
             InputError: as ``DesignSpace.from_bounds``.
         """
         return dataclasses.replace(self, bounds=DesignSpace.from_bounds({**self.bounds.as_dict(), **bounds}))
+
+
+def _check_speeds(speeds_knots: tuple[float, ...], wave_speed: float) -> None:
+    rule = rules(ConditionsSection)["froude_numbers"]
+    for knots in speeds_knots:
+        froude = knots * KNOT / wave_speed
+        if not rule.lower <= froude <= rule.upper:
+            low, high = (limit * wave_speed / KNOT for limit in (rule.lower, rule.upper))
+            raise InputError(
+                f"conditions: speeds_knots {knots:g} is Froude number {froude:.3f} on the initial design's length, "
+                f"outside {rule.lower:g} to {rule.upper:g}; give speeds from {low:.1f} to {high:.1f} kn"
+            )
 
 
 def load_case(name_or_path: str | Path) -> Case:
@@ -171,7 +211,8 @@ def case_from_toml(content: str, where: str, folder: Path | None = None) -> Case
 
 def _assembled(tables: Mapping[str, Any], texts: Mapping[str, Any], where: str, stem: str, folder: Path | None) -> Case:
     try:
-        sections = {name: read_section(section, tables.get(name, {}), name) for name, section in SECTIONS.items()}
+        stated = {**tables, "conditions": ConditionsSection.completed(tables.get("conditions", {}))}
+        sections = {name: read_section(section, stated.get(name, {}), name) for name, section in SECTIONS.items()}
         if folder is not None:
             sections["hull"] = _absolute(sections["hull"], "hull", ("offsets", "stl"), folder)
             sections["propeller"] = _absolute(sections["propeller"], "propeller", ("geometry",), folder)

@@ -70,7 +70,7 @@ class ConditionResult:
         speed: V in m/s.
         friction_resistance: ITTC-57 without form factor, in N.
         wave_resistance: after calibration, in N.
-        total_resistance: (1 + k) friction + wave, in N.
+        total_resistance: friction + form + wave + correlation + air + appendages, in N.
         wave_coefficient: wave resistance over 1/2 rho V^2 S.
         wake_fraction, thrust_deduction: w and t.
         advance_coefficient: J where required and available KT meet.
@@ -89,6 +89,16 @@ class ConditionResult:
         blade_cavitating_share: level 2: share of the back's area under vapour pressure.
         wave_coefficient_pressure: level 2's cross-check by pressure integration, not calibrated.
         sinkage, trim: level 2: m (positive down) and rad (positive bow down), reported, not fed back.
+        form_resistance: k times friction, in N.
+        correlation_resistance, air_resistance, appendage_resistance: of the correlation allowance, of the ship above
+            water in its own wind, and of the appendages, in N.
+        effective_power: resistance times speed, in W.
+        hull_efficiency: (1 - t)/(1 - w).
+        relative_rotative_efficiency: open-water torque over the torque behind the ship, at the same thrust.
+        propulsive_efficiency: effective over delivered power.
+        brake_power: of the engine, with sea margin and shaft losses, in W.
+
+    The last nine are missing (None) in the file of a version that did not know them.
     """
 
     froude_number: float
@@ -119,6 +129,15 @@ class ConditionResult:
     blade_cavitating_share: float | None = None
     sinkage: float | None = None
     trim: float | None = None
+    form_resistance: float | None = None
+    correlation_resistance: float | None = None
+    air_resistance: float | None = None
+    appendage_resistance: float | None = None
+    effective_power: float | None = None
+    hull_efficiency: float | None = None
+    relative_rotative_efficiency: float | None = None
+    propulsive_efficiency: float | None = None
+    brake_power: float | None = None
 
 
 @dataclass(frozen=True)

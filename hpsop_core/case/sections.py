@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import dataclasses
+import itertools
 import math
+from collections.abc import Mapping
 from dataclasses import dataclass
 
 from hpsop_core.assets import SHIPPED_HULLS, SHIPPED_PROPELLERS
@@ -88,20 +90,50 @@ class ConditionsSection:
         ("fixed", "froude"),
         "fixed: the initial design's speeds at these Froude numbers; froude: each design's length decides its speed",
     )
-    froude_numbers: tuple[float, ...] = numbers((0.22, 0.27), 0.1, 0.5, "Froude numbers V/sqrt(g Lpp), ascending")
-    weights: tuple[float, ...] = numbers((0.65, 0.35), 0.0, 1.0, "weights of the conditions; their sum is 1")
+    froude_numbers: tuple[float, ...] = numbers(
+        (0.22, 0.27), 0.1, 0.5, "Froude numbers V/sqrt(g Lpp), ascending; empty with speeds_knots"
+    )
+    speeds_knots: tuple[float, ...] = numbers((), 0.1, 80.0, "speeds instead of Froude numbers, ascending", "kn")
+    weights: tuple[float, ...] = numbers((0.65, 0.35), 0.0, 1.0, "shares of time of the conditions; their sum is 1")
 
     def __post_init__(self) -> None:
-        if not 1 <= len(self.froude_numbers) <= 4:
-            raise InputError(f"conditions: froude_numbers has {len(self.froude_numbers)} entries; give one to four")
-        if len(self.weights) != len(self.froude_numbers):
+        if self.froude_numbers and self.speeds_knots:
+            raise InputError("conditions: froude_numbers and speeds_knots are both given; keep one of them")
+        if self.speeds_knots and self.speed == "froude":
             raise InputError(
-                f"conditions: {len(self.weights)} weights for {len(self.froude_numbers)} Froude numbers; give one each"
+                'conditions: speeds_knots mean nothing with speed = "froude", where each design\'s length decides; '
+                'write speed = "fixed" or give froude_numbers'
             )
-        if any(b <= a for a, b in zip(self.froude_numbers, self.froude_numbers[1:], strict=False)):
-            raise InputError("conditions: froude_numbers must ascend; sort them together with their weights")
-        if abs(math.fsum(self.weights) - 1.0) > 1e-9:
-            raise InputError(f"conditions: weights sum to {math.fsum(self.weights):g}; they must sum to 1")
+        name = "speeds_knots" if self.speeds_knots else "froude_numbers"
+        stated: tuple[float, ...] = getattr(self, name)
+        if not stated:
+            raise InputError("conditions: none is given; give froude_numbers or speeds_knots, for example [20, 24]")
+        if len(self.weights) != len(stated):
+            raise InputError(
+                f"conditions: {len(self.weights)} weights for {len(stated)} {name}; give one each, their sum is 1"
+            )
+        if any(b <= a for a, b in itertools.pairwise(stated)):
+            ordered = [f"{value:g}" for value in sorted(set(stated))]
+            raise InputError(
+                f"conditions: {name} must ascend; write [{', '.join(ordered)}] and sort the weights in the same way"
+            )
+        total = math.fsum(self.weights)
+        if abs(total - 1.0) > 1e-9:
+            shares = f"; write for example [{', '.join(_shares(self.weights))}]" if total > 0.0 else ""
+            raise InputError(f"conditions: weights sum to {total:g}; they must sum to 1{shares}")
+
+    @classmethod
+    def completed(cls, table: Mapping[str, object]) -> dict[str, object]:
+        """A case file's table with what follows from it: whoever states speeds in knots gives no Froude numbers."""
+        return {"froude_numbers": [], **table} if table.get("speeds_knots") else dict(table)
+
+
+def _shares(weights: tuple[float, ...]) -> list[str]:
+    """The weights over their sum in four digits, the greatest one taking what rounding leaves."""
+    total = math.fsum(weights)
+    parts = [round(1e4 * weight / total) for weight in weights]
+    parts[parts.index(max(parts))] += 10000 - sum(parts)
+    return [f"{1e-4 * part:.4g}" for part in parts]
 
 
 @dataclass(frozen=True)
@@ -139,13 +171,51 @@ class ConstantsSection:
     atmospheric_pressure: float = number(101325.0, 8e4, 1.1e5, "pressure at the water surface", "Pa")
     vapour_pressure: float = number(1700.0, 0.0, 1e4, "vapour pressure", "Pa")
     form_factor: float = number(0.094, 0.0, 1.0, "k on ITTC-57 friction")
+    form_factor_formula: str = choice(
+        "stated",
+        ("stated", "scaled", "holtrop"),
+        "stated: form_factor for every design; scaled: form_factor for the initial design, the others by the change of "
+        "Holtrop's; holtrop: Holtrop's",
+    )
+    correlation_allowance: float = number(0.0, -0.001, 0.002, "C_A, model-ship correlation allowance")
+    correlation_allowance_formula: str = choice(
+        "stated",
+        ("stated", "holtrop"),
+        "stated: correlation_allowance; holtrop: Holtrop's, for a roughness of 150e-6 m",
+    )
+    air_drag_coefficient: float = number(0.8, 0.0, 2.0, "drag coefficient of the ship above water, ahead in still air")
+    frontal_area: float = number(
+        0.0, 0.0, 10000.0, "frontal area of the initial design above water; the others' goes with their breadth", "m2"
+    )
+    appendage_factor: float = number(
+        0.0, 0.0, 1.0, "resistance of the appendages over the hull's flat-plate friction: sum of (1 + k2) S_app over S"
+    )
     wake_formula: str = choice(
         "taylor_quadratic",
-        ("taylor_quadratic", "linear"),
-        "taylor_quadratic: least-squares fit of Taylor's single-screw table; linear: 0.5 CB - 0.05",
+        ("taylor_quadratic", "linear", "holtrop", "stated"),
+        "taylor_quadratic: least-squares fit of Taylor's single-screw table; linear: 0.5 CB - 0.05; holtrop: "
+        "Holtrop's; stated: stated_wake_fraction for the initial design, the others by the change of Holtrop's",
+    )
+    stated_wake_fraction: float | None = optional_number(0.0, 0.6, "w of the initial design, for wake_formula = stated")
+    thrust_deduction_formula: str = choice(
+        "schoenherr",
+        ("schoenherr", "holtrop", "stated"),
+        "schoenherr: thrust_deduction_factor times w; holtrop: Holtrop's; stated: stated_thrust_deduction for the "
+        "initial design, the others by the change of Holtrop's",
     )
     thrust_deduction_factor: float = number(0.6, 0.0, 1.2, "Schoenherr: t over w")
+    stated_thrust_deduction: float | None = optional_number(
+        0.0, 0.6, "t of the initial design, for thrust_deduction_formula = stated"
+    )
     relative_rotative_efficiency: float = number(1.0, 0.8, 1.2, "eta_R")
+    relative_rotative_efficiency_formula: str = choice(
+        "stated", ("stated", "holtrop"), "stated: relative_rotative_efficiency; holtrop: Holtrop's"
+    )
+    stern_shape: float = number(
+        0.0, -25.0, 10.0, "Holtrop's C_stern: -25 pram with gondola, -10 V sections, 0 normal, 10 U with Hogner stern"
+    )
+    sea_margin: float = number(0.0, 0.0, 1.0, "on the brake power, for wind, waves and fouling: 0.15 is 15 %")
+    shaft_efficiency: float = number(1.0, 0.8, 1.0, "delivered power over brake power, in calm water")
     propeller_roughness: float = number(30e-6, 1e-6, 1e-3, "roughness of the blades (ITTC-78)", "m")
     wave_calibration: str = choice(
         "level2",
@@ -155,6 +225,14 @@ class ConstantsSection:
     stated_wave_coefficients: tuple[float, ...] = numbers(
         (), 0.0, 0.02, "the initial design's wave coefficients, one a condition, for wave_calibration = stated"
     )
+
+    def __post_init__(self) -> None:
+        for formula, value in (
+            ("wake_formula", "stated_wake_fraction"),
+            ("thrust_deduction_formula", "stated_thrust_deduction"),
+        ):
+            if getattr(self, formula) == "stated" and getattr(self, value) is None:
+                raise InputError(f"constants: {formula} = stated needs {value}; add it or choose another formula")
 
 
 @dataclass(frozen=True)

@@ -54,20 +54,28 @@ def case_and_design(name: str, changes: Sequence[str]) -> tuple[Case, DesignVari
     """
     case = load_case(name)
     variables: dict[str, object] = {}
+    fields: dict[str, dict[str, object]] = {}
     for change in changes:
         field, separator, word = change.partition("=")
         field = field.strip()
         if not separator:
             raise InputError(f"--set {change}: write NAME=VALUE, for example --set diameter=9.2")
         if "." in field:
-            case = _changed_case(case, field, word.strip())
+            section, name, value = _case_field(case, field, word.strip())
+            fields.setdefault(section, {})[name] = value
         else:
             variables[field] = _number_or_word(word.strip())
+    try:
+        # A section at once: fields that belong together (speeds and weights) are stated one after the other.
+        for section, values in fields.items():
+            case = case.replaced(section, **values)
+    except InputError as error:
+        raise InputError(f"--set {error}") from error
     initial = case.initial.variables
     return case, initial.replaced(variables, "--set") if variables else initial
 
 
-def _changed_case(case: Case, field: str, word: str) -> Case:
+def _case_field(case: Case, field: str, word: str) -> tuple[str, str, object]:
     section, _, name = field.partition(".")
     sections = [item.name for item in dataclasses.fields(case) if dataclasses.is_dataclass(getattr(case, item.name))]
     sections.remove("bounds")
@@ -80,10 +88,7 @@ def _changed_case(case: Case, field: str, word: str) -> Case:
         value = [_number_or_word(item.strip()) for item in word.strip("[]").split(",") if item.strip()]
     else:
         value = _number_or_word(word)
-    try:
-        return case.replaced(section, **{name: value})
-    except InputError as error:
-        raise InputError(f"--set {error}") from error
+    return section, name, value
 
 
 def _number_or_word(word: str) -> object:

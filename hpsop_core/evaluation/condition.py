@@ -9,19 +9,20 @@ import numpy as np
 from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.evaluation.hull_answer import ResistancePoint
+from hpsop_core.evaluation.hull_propulsion import PropulsionFactors
 from hpsop_core.evaluation.propeller_answer import PropellerAnswer
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.hydro import cavitation
-from hpsop_core.hydro.interaction import thrust_deduction
 from hpsop_core.hydro.operating_point import match
+from hpsop_core.hydro.powering import powers
 
 
 def condition_result(
     case: Case,
     point: ResistancePoint,
     weight: float,
-    wake: float,
+    factors: PropulsionFactors,
     hull: Hull,
     propeller: Propeller,
     answer: PropellerAnswer,
@@ -32,7 +33,7 @@ def condition_result(
         case: its constants.
         point: the hull's resistance at the condition's speed.
         weight: the condition's.
-        wake: Taylor's wake fraction.
+        factors: w, t and eta_R at this condition.
         hull, propeller: the design's.
         answer: the propeller's open-water curve, at level 2 with its blade pressures.
 
@@ -40,7 +41,7 @@ def condition_result(
         SolverFailure: the propeller cannot drive the ship at this speed.
     """
     constants = case.constants
-    deduction = thrust_deduction(wake, constants.thrust_deduction_factor)
+    wake, deduction = factors.wake_fraction, factors.thrust_deduction
     operating = match(
         answer.curve,
         point.total_resistance,
@@ -49,7 +50,16 @@ def condition_result(
         constants.density,
         point.speed,
         propeller.diameter,
-        constants.relative_rotative_efficiency,
+        factors.relative_rotative_efficiency,
+    )
+    power = powers(
+        total_resistance=point.total_resistance,
+        speed=point.speed,
+        wake=wake,
+        deduction=deduction,
+        delivered_power=operating.delivered_power,
+        sea_margin=constants.sea_margin,
+        shaft_efficiency=constants.shaft_efficiency,
     )
     margin = cavitation.pressure_margin(
         hull.draft - hull.shaft_height,
@@ -105,6 +115,15 @@ def condition_result(
         wave_coefficient_pressure=point.wave_coefficient_pressure,
         sinkage=point.sinkage,
         trim=point.trim,
+        form_resistance=point.form_resistance,
+        correlation_resistance=point.correlation_resistance,
+        air_resistance=point.air_resistance,
+        appendage_resistance=point.appendage_resistance,
+        effective_power=power.effective,
+        hull_efficiency=power.hull_efficiency,
+        relative_rotative_efficiency=factors.relative_rotative_efficiency,
+        propulsive_efficiency=power.propulsive_efficiency,
+        brake_power=power.brake,
     )
 
 

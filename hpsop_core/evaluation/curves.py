@@ -18,7 +18,7 @@ from hpsop_core.evaluation.hull_answer import (
     resistance_point,
     wave_answers,
 )
-from hpsop_core.evaluation.physics import basis_for
+from hpsop_core.evaluation.physics import basis_for, design_factors
 from hpsop_core.evaluation.reference import Reference
 from hpsop_core.evaluation.result import Evaluation, OpenWaterCurve
 from hpsop_core.evaluation.shapes import design_hull
@@ -63,6 +63,7 @@ def resistance_curve(
     key = hull_variables(case.hull, variables, basis.displaced_volume)
     waves = wave_answers(key, level, tuple(froude_numbers))
     constants = case.constants
+    factors, _ = design_factors(case, variables, build_hull(key), basis, form_factor)
     return tuple(
         resistance_point(
             build_hull(key),
@@ -71,7 +72,7 @@ def resistance_curve(
             gravity=constants.gravity,
             density=constants.density,
             viscosity=constants.viscosity,
-            form_factor=constants.form_factor if form_factor is None else form_factor,
+            factors=factors,
             wave_calibration=basis.calibration_at(froude),
         )
         for froude, wave in zip(froude_numbers, waves, strict=True)

@@ -13,6 +13,7 @@ from hpsop_core.evaluation.levels import WaveAnswer, level_of
 from hpsop_core.geometry.hull.hull import Hull, ParentHull, load_parent_hull
 from hpsop_core.geometry.hull.input import parent_hull_from_offsets, parent_hull_from_stl
 from hpsop_core.hydro.friction import ittc57_coefficient
+from hpsop_core.hydro.powering import ResistanceFactors, resistance_parts
 
 
 @dataclass(frozen=True)
@@ -42,8 +43,12 @@ class ResistancePoint:
     speed: float
     friction_coefficient: float
     friction_resistance: float
+    form_resistance: float
     wave_coefficient: float
     wave_resistance: float
+    correlation_resistance: float
+    air_resistance: float
+    appendage_resistance: float
     total_resistance: float
     wave_coefficient_pressure: float | None
     sinkage: float | None
@@ -124,17 +129,17 @@ def resistance_point(
     gravity: float,
     density: float,
     viscosity: float,
-    form_factor: float,
+    factors: ResistanceFactors,
     wave_calibration: float = 1.0,
 ) -> ResistancePoint:
-    """Total resistance (1 + k) Rf + Rw of a hull at a Froude number.
+    """Resistance of a hull at a Froude number, in its parts.
 
     Args:
         hull: the design's.
         wave: the level's answer at this Froude number.
         froude_number: V/sqrt(g Lpp).
         gravity, density, viscosity: in SI units.
-        form_factor: k on ITTC-57 friction.
+        factors: of the parts beside friction (ITTC-57) and waves.
         wave_calibration: factor on the wave resistance.
 
     Raises:
@@ -144,15 +149,26 @@ def resistance_point(
     dynamic = 0.5 * density * speed**2 * hull.hydrostatics.wetted_surface
     friction_coefficient = ittc57_coefficient(speed * hull.length / viscosity)
     wave_coefficient = wave.wave_coefficient * wave_calibration
-    friction, waves = friction_coefficient * dynamic, wave_coefficient * dynamic
+    parts = resistance_parts(
+        factors,
+        speed=speed,
+        density=density,
+        wetted_surface=hull.hydrostatics.wetted_surface,
+        friction=friction_coefficient * dynamic,
+        wave=wave_coefficient * dynamic,
+    )
     return ResistancePoint(
         froude_number=froude_number,
         speed=speed,
         friction_coefficient=friction_coefficient,
-        friction_resistance=friction,
+        friction_resistance=parts.friction,
+        form_resistance=parts.form,
         wave_coefficient=wave_coefficient,
-        wave_resistance=waves,
-        total_resistance=(1.0 + form_factor) * friction + waves,
+        wave_resistance=parts.wave,
+        correlation_resistance=parts.correlation,
+        air_resistance=parts.air,
+        appendage_resistance=parts.appendage,
+        total_resistance=parts.total,
         wave_coefficient_pressure=wave.wave_coefficient_pressure,
         sinkage=wave.sinkage,
         trim=wave.trim,

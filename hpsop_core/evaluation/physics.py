@@ -11,13 +11,23 @@ from hpsop_core.case.design_numbers import DesignNumbers, HullResult, PropellerR
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.evaluation.condition import condition_result
 from hpsop_core.evaluation.hull_answer import build_hull, hull_variables, resistance_point, wave_answers
+from hpsop_core.evaluation.hull_propulsion import (
+    HoltropNumbers,
+    holtrop_hull,
+    holtrop_numbers,
+    holtrop_warnings,
+    propulsion_factors,
+    resistance_factors,
+    uses_holtrop,
+)
 from hpsop_core.evaluation.levels import TRUTH, Level, level_of
 from hpsop_core.evaluation.propeller_answer import build_propeller, propeller_answer, propeller_variables
 from hpsop_core.evaluation.shapes import initial_volume
 from hpsop_core.geometry.clearance import baseline_clearance, propeller_clearance
 from hpsop_core.geometry.hull.hull import Hull
-from hpsop_core.hydro.interaction import wake_fraction
+from hpsop_core.hydro.holtrop import HoltropHull
 from hpsop_core.hydro.operating_point import PropellerCurve
+from hpsop_core.hydro.powering import ResistanceFactors
 
 
 @dataclass(frozen=True)
@@ -29,12 +39,14 @@ class Basis:
         speeds: the initial design's at the case's Froude numbers, in m/s.
         froude_numbers: the case's.
         wave_calibration: factors on level 1's wave resistance at these Froude numbers; ones at level 2.
+        holtrop: what Holtrop's formulas give for the initial design; None where the case does not use them.
     """
 
     displaced_volume: float
     speeds: tuple[float, ...]
     froude_numbers: tuple[float, ...]
     wave_calibration: tuple[float, ...]
+    holtrop: HoltropNumbers | None = None
 
     def calibration_at(self, froude_number: float) -> float:
         """The factor at any Froude number: linear between the conditions, constant outside."""
@@ -48,13 +60,51 @@ def basis_for(case: Case, level: int) -> Basis:
         SolverFailure: the initial design's form or waves cannot be computed.
     """
     volume = initial_volume(case)
-    froude_numbers = case.conditions.froude_numbers
     return Basis(
         displaced_volume=volume,
-        speeds=tuple(froude * (case.constants.gravity * case.initial.length) ** 0.5 for froude in froude_numbers),
-        froude_numbers=froude_numbers,
+        speeds=case.speeds,
+        froude_numbers=case.froude_numbers,
         wave_calibration=_wave_calibration(case, level_of(level), volume),
+        holtrop=_initial_holtrop(case, volume),
     )
+
+
+def _initial_holtrop(case: Case, volume: float) -> HoltropNumbers | None:
+    if not uses_holtrop(case.constants):
+        return None
+    design = case.initial.variables
+    hull = build_hull(hull_variables(case.hull, design, volume))
+    ship = holtrop_hull(hull, _counted_volume(case, design, hull, volume), case.constants)
+    return holtrop_numbers(ship, design.diameter, case.speeds, case.constants.viscosity)
+
+
+def _counted_volume(case: Case, variables: DesignVariables, hull: Hull, initial_volume: float) -> float:
+    """Displacement in m3 as the case counts it: booked with the affine form, else the hull's own."""
+    if case.hull.form == "affine":
+        return initial_volume * variables.displacement_ratio
+    return hull.hydrostatics.displaced_volume
+
+
+def design_factors(
+    case: Case, variables: DesignVariables, hull: Hull, basis: Basis, form_factor: float | None = None
+) -> tuple[ResistanceFactors, HoltropHull | None]:
+    """What makes a design's resistance beside friction and waves; with Holtrop's method, the hull as it sees it.
+
+    Args:
+        case: what it states.
+        variables, hull: the design.
+        basis: of the case.
+        form_factor: k instead of the case's.
+
+    Raises:
+        SolverFailure: Holtrop's formulas have no value for this form.
+    """
+    ship = None
+    if uses_holtrop(case.constants):
+        volume = _counted_volume(case, variables, hull, basis.displaced_volume)
+        ship = holtrop_hull(hull, volume, case.constants)
+    initial = None if basis.holtrop is None else basis.holtrop.form_factor
+    return resistance_factors(case, hull, ship, initial, form_factor), ship
 
 
 @dataclass(frozen=True)
@@ -89,13 +139,21 @@ def compute(case: Case, variables: DesignVariables, level: int, basis: Basis) ->
     propeller = build_propeller(propeller_key)
     answer = propeller_answer(propeller_key, level, constants.propeller_roughness)
     waves = wave_answers(hull_key, level, froude_numbers)
+    volume = _counted_volume(case, variables, hull, basis.displaced_volume)
     if case.hull.form == "affine":
-        volume = basis.displaced_volume * variables.displacement_ratio
         block_coefficient = volume / (hull.length * hull.breadth * hull.draft)
     else:
-        volume = hull.hydrostatics.displaced_volume
         block_coefficient = hull.hydrostatics.block_coefficient
-    wake = wake_fraction(block_coefficient, constants.wake_formula)
+    resistance, ship = design_factors(case, variables, hull, basis)
+    own: HoltropNumbers | None = None
+    cautions: tuple[str, ...] = ()
+    if ship is not None:
+        speeds = tuple(froude * (constants.gravity * hull.length) ** 0.5 for froude in froude_numbers)
+        own = holtrop_numbers(ship, propeller.diameter, speeds, constants.viscosity)
+        cautions = holtrop_warnings(ship, speeds, constants.gravity)
+    propulsion = propulsion_factors(
+        constants, block_coefficient, propeller.expanded_area_ratio, len(froude_numbers), ship, own, basis.holtrop
+    )
     conditions = tuple(
         condition_result(
             case,
@@ -106,16 +164,18 @@ def compute(case: Case, variables: DesignVariables, level: int, basis: Basis) ->
                 gravity=constants.gravity,
                 density=constants.density,
                 viscosity=constants.viscosity,
-                form_factor=constants.form_factor,
+                factors=resistance,
                 wave_calibration=basis.calibration_at(froude),
             ),
             weight,
-            wake,
+            factors,
             hull,
             propeller,
             answer,
         )
-        for froude, wave, weight in zip(froude_numbers, waves, case.conditions.weights, strict=True)
+        for froude, wave, weight, factors in zip(
+            froude_numbers, waves, case.conditions.weights, propulsion, strict=True
+        )
     )
     numbers = DesignNumbers(
         level=level,
@@ -136,7 +196,7 @@ def compute(case: Case, variables: DesignVariables, level: int, basis: Basis) ->
     )
     # A solver tells everything of one call with each of its answers.
     warnings = dict.fromkeys(line for wave in waves for line in wave.warnings)
-    return Physics(numbers, answer.curve, (*hull.warnings, *warnings))
+    return Physics(numbers, answer.curve, (*hull.warnings, *warnings, *cautions))
 
 
 def _hull_result(hull: Hull, booked: tuple[float, float] | None) -> HullResult:
@@ -164,7 +224,7 @@ def _centre_missed(hull: Hull, variables: DesignVariables) -> float:
 
 def _wave_calibration(case: Case, level: Level, volume: float) -> tuple[float, ...]:
     """The level's factors: level 2's (or the stated) wave resistance of the initial design over the level's own."""
-    froude_numbers = case.conditions.froude_numbers
+    froude_numbers = case.froude_numbers
     if not level.is_calibrated or case.constants.wave_calibration == "none":
         return (1.0,) * len(froude_numbers)
     key = hull_variables(case.hull, case.initial.variables, volume)

@@ -8,6 +8,7 @@ from typing import Any
 
 from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import ConditionResult, DesignNumbers, InitialNumbers
+from hpsop_core.evaluation.hull_propulsion import HoltropNumbers
 from hpsop_core.evaluation.physics import Basis, basis_for, compute
 from hpsop_core.one_thread import one_blas_thread
 
@@ -41,7 +42,10 @@ class Reference:
         columns = data.get("conditions")
         if columns is None:
             columns = {name: data[old] for old, name in _SCHEMA_2.items()}
-        stored = {item.name: data[item.name] for item in fields(Basis)}
+        stored = {item.name: data[item.name] for item in fields(Basis) if item.name in data}
+        if stored.get("holtrop") is not None:
+            holtrop = stored["holtrop"]
+            stored["holtrop"] = HoltropNumbers(**{**holtrop, "wake_fractions": tuple(holtrop["wake_fractions"])})
         basis: dict[str, Any] = {key: tuple(v) if isinstance(v, list) else v for key, v in stored.items()}
         return cls(
             level=data["level"],

@@ -18,6 +18,7 @@ from hpsop_core.evaluation.levels import level_of
 from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.hull.hydrostatics import Hydrostatics
+from hpsop_core.hydro.powering import ResistanceFactors
 from hpsop_core.one_thread import one_blas_thread
 
 FROUDE_RULE = FieldRule("number", "Froude number", "", 0.1, 0.5)
@@ -76,11 +77,11 @@ def resistance(
     density: float | None = None,
     viscosity: float | None = None,
 ) -> Resistance:
-    """Resistance of a design of a case, or of a hull at hand, over Froude numbers: (1 + k) Rf + Rw.
+    """Resistance of a design of a case, or of a hull at hand, over Froude numbers, in its parts.
 
     Args:
-        subject: a case, whose design is towed with the case's water, form factor and calibration; or a hull
-            (``load_hull``), which is towed as it is: salt water, no form factor, no calibration, unless given.
+        subject: a case, whose design is towed with the case's water, form factor, allowances and calibration; or a hull
+            (``load_hull``), which is towed as it is: salt water, friction and waves alone, unless given.
         froude_numbers: V/sqrt(g Lpp) on the hull's own length, each 0.1 to 0.5.
         level: 1 (Michell's integral) or 2 (Rankine panels).
         variables: with a case: the design; the initial one by default.
@@ -122,7 +123,7 @@ def resistance(
                 gravity=ConstantsSection.gravity,
                 density=water[0],
                 viscosity=water[1],
-                form_factor=form_factor or 0.0,
+                factors=ResistanceFactors(form_factor=form_factor or 0.0),
             )
             for froude, wave in zip(numbers, waves, strict=True)
         )

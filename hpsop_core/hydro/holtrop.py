@@ -106,8 +106,8 @@ def form_factor(hull: HoltropHull) -> float:
     else:
         c12 = 0.479948
     c13 = 1.0 + 0.003 * hull.stern_shape
-    run = (hull.breadth / run_length(hull)) ** 0.92497
-    ends = (0.95 - prismatic) ** -0.521448 * (1.0 - prismatic + 0.0225 * hull.buoyancy_centre) ** 0.6906
+    run: float = (hull.breadth / run_length(hull)) ** 0.92497
+    ends: float = (0.95 - prismatic) ** -0.521448 * (1.0 - prismatic + 0.0225 * hull.buoyancy_centre) ** 0.6906
     return c13 * (0.93 + c12 * run * ends) - 1.0
 
 
@@ -126,7 +126,8 @@ def correlation_allowance(hull: HoltropHull) -> float:
     length, block = hull.length, hull.block_coefficient
     c4 = min(hull.draft / length, 0.04)
     slender = 0.003 * math.sqrt(length / 7.5) * block**4 * bulb_factor(hull) * (0.04 - c4)
-    return 0.006 * (length + 100.0) ** -0.16 - 0.00205 + slender
+    allowance: float = 0.006 * (length + 100.0) ** -0.16 - 0.00205 + slender
+    return allowance
 
 
 def bulb_factor(hull: HoltropHull) -> float:
@@ -206,8 +207,8 @@ def thrust_deduction(hull: HoltropHull, diameter: float) -> float:
 
 def relative_rotative_efficiency(hull: HoltropHull, expanded_area_ratio: float) -> float:
     """eta_R = 0.9922 - 0.05908 A_E/A_0 + 0.07424 (C_P - 0.0225 lcb) of a single-screw ship."""
-    return 0.9922 - 0.05908 * expanded_area_ratio + 0.07424 * (
-        hull.prismatic_coefficient - 0.0225 * hull.buoyancy_centre
+    return (
+        0.9922 - 0.05908 * expanded_area_ratio + 0.07424 * (hull.prismatic_coefficient - 0.0225 * hull.buoyancy_centre)
     )
 
 

@@ -13,78 +13,76 @@ AIR_DENSITY = 1.226
 
 
 @dataclass(frozen=True)
-class ResistanceParts:
-    """What a hull resists with; they add up to ``total``. All in N.
+class ResistanceFactors:
+    """What makes the parts of the resistance beside friction and waves; none of it depends on the speed.
 
     Attributes:
-        friction: of the flat plate with the hull's wetted surface.
-        form: k times friction.
-        wave: of the waves.
-        correlation: of the model-ship correlation allowance.
-        air: of the ship above water.
-        appendages: of rudder, bilge keels and the like.
-    """
-
-    friction: float
-    form: float
-    wave: float
-    correlation: float = 0.0
-    air: float = 0.0
-    appendages: float = 0.0
-
-
-def resistance_parts(
-    *,
-    speed: float,
-    density: float,
-    wetted_surface: float,
-    friction: float,
-    wave: float,
-    form_factor: float,
-    correlation_allowance: float,
-    air_drag_coefficient: float,
-    frontal_area: float,
-    appendage_factor: float,
-) -> ResistanceParts:
-    """The parts of the resistance at a speed.
-
-    Args:
-        speed: V in m/s.
-        density: of the water, in kg/m3.
-        wetted_surface: S in m2.
-        friction, wave: R_F and R_W in N.
-        form_factor: k.
+        form_factor: k on the friction.
         correlation_allowance: C_A; R_A = 1/2 rho V^2 S C_A.
         air_drag_coefficient: C_DA; R_AA = 1/2 rho_air V^2 A C_DA: the ship's own wind, no other.
         frontal_area: A of the ship above water, in m2.
         appendage_factor: R_APP over R_F, which is the sum of (1 + k2) S_APP over S.
     """
-    return ResistanceParts(
-        friction=friction,
-        form=form_factor * friction,
-        wave=wave,
-        correlation=0.5 * density * speed**2 * wetted_surface * correlation_allowance,
-        air=0.5 * AIR_DENSITY * speed**2 * frontal_area * air_drag_coefficient,
-        appendages=appendage_factor * friction,
-    )
+
+    form_factor: float = 0.0
+    correlation_allowance: float = 0.0
+    air_drag_coefficient: float = 0.0
+    frontal_area: float = 0.0
+    appendage_factor: float = 0.0
 
 
-def total_resistance(parts: ResistanceParts, form_factor: float) -> float:
-    """(1 + k) R_F + R_W + R_A + R_AA + R_APP in N.
+@dataclass(frozen=True)
+class ResistanceParts:
+    """What a hull resists with, in N; the six add up to ``total``.
 
-    In this order, parts that are zero leave every bit of (1 + k) R_F + R_W as it is.
+    Attributes:
+        friction: of a flat plate of the hull's wetted surface.
+        form: k times friction.
+        wave: of the waves.
+        correlation: of the model-ship correlation allowance.
+        air: of the ship above water.
+        appendage: of rudder, bilge keels and the like.
+        total: their sum.
     """
-    bare = (1.0 + form_factor) * parts.friction + parts.wave
-    return bare + parts.correlation + parts.air + parts.appendages
+
+    friction: float
+    form: float
+    wave: float
+    correlation: float
+    air: float
+    appendage: float
+    total: float
+
+
+def resistance_parts(
+    factors: ResistanceFactors, *, speed: float, density: float, wetted_surface: float, friction: float, wave: float
+) -> ResistanceParts:
+    """The parts of the resistance at a speed.
+
+    Args:
+        factors: of the ship.
+        speed: V in m/s.
+        density: of the water, in kg/m3.
+        wetted_surface: S in m2.
+        friction, wave: R_F and R_W in N.
+    """
+    correlation = 0.5 * density * speed**2 * wetted_surface * factors.correlation_allowance
+    air = 0.5 * AIR_DENSITY * speed**2 * factors.frontal_area * factors.air_drag_coefficient
+    appendage = factors.appendage_factor * friction
+    # In this order parts that are zero leave (1 + k) R_F + R_W as it is, to the last bit.
+    total = (1.0 + factors.form_factor) * friction + wave + correlation + air + appendage
+    return ResistanceParts(friction, factors.form_factor * friction, wave, correlation, air, appendage, total)
 
 
 @dataclass(frozen=True)
 class Powers:
-    """Attributes:
-    effective: P_E = R_T V in W.
-    hull_efficiency: eta_H = (1 - t)/(1 - w).
-    propulsive_efficiency: eta_D = P_E/P_D.
-    brake: P_B in W, sea margin and losses of the shaft included.
+    """Powers and efficiencies of a ship at a speed.
+
+    Attributes:
+        effective: P_E = R_T V in W.
+        hull_efficiency: eta_H = (1 - t)/(1 - w).
+        propulsive_efficiency: eta_D = P_E/P_D.
+        brake: P_B in W, with the sea margin and the losses of the shaft.
     """
 
     effective: float
@@ -110,7 +108,7 @@ def powers(
         speed: V in m/s.
         wake, deduction: w and t.
         delivered_power: P_D in W, in calm water.
-        sea_margin: on the delivered power, 0.15 for 15 %.
+        sea_margin: on the power, 0.15 for 15 %.
         shaft_efficiency: eta_S, of shaft, bearings and gears.
     """
     effective = total_resistance * speed
