@@ -11,7 +11,7 @@ from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 
 from hpsop_core.case import constraints
-from hpsop_core.case.case import Case
+from hpsop_core.case.case import KNOT, Case
 from hpsop_core.case.declared_variable import Variable
 from hpsop_core.case.objectives import objective_named
 from hpsop_core.case.variables import VARIABLE_TABLE, DesignVariables
@@ -99,7 +99,9 @@ def _condition(index: int, name: str, scale: float = 1.0) -> Callable[[Evaluatio
         if index >= len(evaluation.conditions):
             return None
         value = getattr(evaluation.conditions[index], name)
-        return None if value is None else float(value) * scale
+        if value is None or (value == 0.0 and name in _PARTS):
+            return None
+        return float(value) * scale
 
     return get
 
@@ -176,9 +178,12 @@ CONSTRAINTS: tuple[Quantity, ...] = tuple(
     for item in constraints.CONSTRAINTS
 )
 
+# Parts of the resistance that a case does not have would only fill the tables with zeros.
+_PARTS = ("form_resistance", "correlation_resistance", "air_resistance", "appendage_resistance")
+
 _CONDITION = (
     ("froude_number", "Froude number", "Fn_", "", 4, 1.0, 0),
-    ("speed", "speed", "V_", "kn", 2, 1.0 / 0.514444, 0),
+    ("speed", "speed", "V_", "kn", 2, 1.0 / KNOT, 0),
     ("total_resistance", "total resistance", "R_T", "kN", 0, 1e-3, -1),
     ("friction_resistance", "friction (ITTC-57)", "R_F", "kN", 0, 1e-3, -1),
     ("form_resistance", "form, k × friction", "R_form", "kN", 0, 1e-3, -1),
@@ -208,10 +213,22 @@ _CONDITION = (
 )
 
 
-def condition_quantities(froude_numbers: Sequence[float]) -> tuple[Quantity, ...]:
-    """The numbers of each operating condition, headed by its Froude number."""
+def condition_names(case: Case) -> tuple[str, ...]:
+    """What each operating condition is called: by its speed, or by its Froude number where the length decides."""
+    if case.conditions.speed == "froude":
+        return tuple(f"Fn {froude:g}" for froude in case.froude_numbers)
+    return tuple(f"{speed / KNOT:.4g} kn" for speed in case.speeds)
+
+
+def conditions_of(evaluation: Evaluation) -> tuple[str, ...]:
+    """The same for one design: its own speeds."""
+    return tuple(f"{condition.speed / KNOT:.4g} kn" for condition in evaluation.conditions)
+
+
+def condition_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
+    """The numbers of each operating condition, under its name (see ``condition_names``)."""
     made = []
-    for index, froude in enumerate(froude_numbers):
+    for index, words in enumerate(names):
         for name, label, symbol, unit, decimals, scale, better in _CONDITION:
             made.append(
                 Quantity(
@@ -221,16 +238,16 @@ def condition_quantities(froude_numbers: Sequence[float]) -> tuple[Quantity, ...
                     unit,
                     decimals,
                     _condition(index, name, scale),
-                    f"Condition {index + 1}: Fn {froude:g}",
+                    f"Condition {index + 1}: {words}",
                     better,
                 )
             )
     return tuple(made)
 
 
-def all_quantities(froude_numbers: Sequence[float]) -> tuple[Quantity, ...]:
-    """Everything there is, in the order of the tables."""
-    return (*OBJECTIVES, *HULL, *PROPELLER, *condition_quantities(froude_numbers), *CONSTRAINTS)
+def all_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
+    """Everything there is, in the order of the tables; ``names`` of the conditions."""
+    return (*OBJECTIVES, *HULL, *PROPELLER, *condition_quantities(names), *CONSTRAINTS)
 
 
 def objective_title(name: str, symbol: str) -> str:

@@ -10,7 +10,7 @@ from numpy.typing import NDArray
 from explorer.state.run_picture import RunPicture
 from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.markup import Markup, fill, joined, symbol_svg
-from hpsop_core.quantities import OBJECTIVES, Quantity, all_quantities, free_variables, number_text
+from hpsop_core.quantities import OBJECTIVES, Quantity, all_quantities, condition_names, free_variables, number_text
 
 _MOST_LINES = 350
 _TEXT = '<text x="{:.1f}" y="{:.1f}" text-anchor="middle" class="{}">{}</text>'
@@ -20,7 +20,7 @@ _RESULTS = ("block_coefficient", "total_resistance_1", "open_water_efficiency_1"
 def axes_of(picture: RunPicture) -> list[Quantity]:
     """Free variables, a few results, and the objectives."""
     chosen = free_variables(picture.case)
-    everything = {quantity.key: quantity for quantity in all_quantities(picture.case.conditions.froude_numbers)}
+    everything = {quantity.key: quantity for quantity in all_quantities(condition_names(picture.case))}
     chosen += [everything[key] for key in _RESULTS if key in everything]
     return [*chosen, *OBJECTIVES]
 

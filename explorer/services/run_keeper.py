@@ -28,7 +28,7 @@ from explorer.state.run_picture import (
 from hpsop_core.case.case import Case
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation.result import Evaluation
-from hpsop_core.quantities import Quantity, all_quantities, variable_quantities
+from hpsop_core.quantities import Quantity, all_quantities, condition_names, variable_quantities
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.events import RunEvent
 from hpsop_core.runs.lock import is_being_written
@@ -276,7 +276,7 @@ class RunKeeper:
         if not self._quantities:
             self._quantities = (
                 *variable_quantities(case.initial.variables),
-                *all_quantities(case.conditions.froude_numbers),
+                *all_quantities(condition_names(case)),
             )
         status, message = self._status(reader)
         if reader is None:

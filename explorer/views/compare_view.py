@@ -11,6 +11,7 @@ from explorer.state.session import Session
 from explorer.views.chips import GAP, box, chip, chips, soft
 from explorer.views.tables import many_table
 from hpsop_core.markup import Markup, fill
+from hpsop_core.quantities import condition_names
 
 
 class CompareView:
@@ -66,7 +67,7 @@ class CompareView:
                 )
             )
         initials = {level: self._designs.initial(level) for level in levels}
-        table = many_table(initials, session.pins, session.picture.case.conditions.froude_numbers)
+        table = many_table(initials, session.pins, condition_names(session.picture.case))
         self._html.show(box(*rows, table))
 
     def _index(self, event: PageEvent) -> int | None:

@@ -12,6 +12,7 @@ from explorer.views.chips import GAP, box, chip, chips, soft
 from explorer.views.on_display import select_design
 from explorer.views.tables import comparison_table, headline, warnings_html
 from hpsop_core.markup import fill
+from hpsop_core.quantities import condition_names
 
 
 class DesignView:
@@ -61,7 +62,7 @@ class DesignView:
             chip("pin", "pinned" if pinned else "pin", on=pinned, hint="keep this design side by side (at most four)"),
         )
         initial = self._designs.initial(shown.evaluation.level)
-        table = comparison_table(initial, shown, session.picture.case.conditions.froude_numbers)
+        table = comparison_table(initial, shown, condition_names(session.picture.case))
         self._html.show(
             box(
                 fill(

@@ -16,6 +16,7 @@ from hpsop_core.quantities import (
     all_quantities,
     change_text,
     condition_quantities,
+    conditions_of,
     violated,
 )
 
@@ -45,11 +46,11 @@ def warnings_html(shown: Shown) -> Markup:
     return joined(lines)
 
 
-def comparison_table(initial: Shown | None, selected: Shown | None, froude_numbers: Sequence[float]) -> Markup:
+def comparison_table(initial: Shown | None, selected: Shown | None, conditions: Sequence[str]) -> Markup:
     """Initial, selected and change, grouped; the conditions stand side by side in their own groups."""
     rows = [Markup("<tr><th></th><th>initial</th><th>selected</th><th>change</th></tr>")]
     group = ""
-    for quantity in all_quantities(froude_numbers):
+    for quantity in all_quantities(conditions):
         first = quantity.value(initial.evaluation) if initial else None
         second = quantity.value(selected.evaluation) if selected else None
         if first is None and second is None:
@@ -73,15 +74,13 @@ def comparison_table(initial: Shown | None, selected: Shown | None, froude_numbe
     return _table(rows)
 
 
-def many_table(
-    initials: Mapping[int, Shown | None], designs: Sequence[Shown], froude_numbers: Sequence[float]
-) -> Markup:
+def many_table(initials: Mapping[int, Shown | None], designs: Sequence[Shown], conditions: Sequence[str]) -> Markup:
     """All numbers of several designs with the difference to the initial design at the same level below each.
 
     Args:
         initials: the initial design by level; the column "initial" is that of the last design's level.
         designs: one or more.
-        froude_numbers: of the case.
+        conditions: their names.
     """
     initial = initials.get(designs[-1].evaluation.level)
     heads = joined(
@@ -96,7 +95,7 @@ def many_table(
     name = _name if len(designs) < _ROOM_FOR_NAMES else _short_name
     rows = [fill("<tr><th></th><th>initial</th>{}</tr>", heads)]
     group = ""
-    for quantity in all_quantities(froude_numbers):
+    for quantity in all_quantities(conditions):
         first = quantity.value(initial.evaluation) if initial else None
         values = [quantity.value(item.evaluation) for item in designs]
         if first is None and all(value is None for value in values):
@@ -137,11 +136,11 @@ def _table(rows: Sequence[Markup]) -> Markup:
 def design_card(shown: Shown) -> Markup:
     """Every number of a design, for the tooltip."""
     evaluation = shown.evaluation
-    froude = [condition.froude_number for condition in evaluation.conditions]
+    names = conditions_of(evaluation)
     columns = [_table([_card_row(quantity, shown) for quantity in (*OBJECTIVES, *HULL, *PROPELLER, *CONSTRAINTS)])]
-    quantities = condition_quantities([round(value, 4) for value in froude])
-    per_condition = len(quantities) // max(len(froude), 1) if froude else 0
-    for index in range(len(froude)):
+    quantities = condition_quantities(names)
+    per_condition = len(quantities) // max(len(names), 1)
+    for index in range(len(names)):
         part = quantities[index * per_condition : (index + 1) * per_condition]
         group = fill('<tr class="group"><td colspan="2">{}</td></tr>', part[0].group)
         columns.append(_table([group, *(_card_row(quantity, shown) for quantity in part)]))

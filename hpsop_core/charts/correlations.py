@@ -10,7 +10,7 @@ from scipy.stats import spearmanr
 
 from hpsop_core.case.case import Case
 from hpsop_core.markup import Markup, escape, fill
-from hpsop_core.quantities import OBJECTIVES, Quantity, all_quantities, free_variables
+from hpsop_core.quantities import OBJECTIVES, Quantity, all_quantities, condition_names, free_variables
 from hpsop_core.typing_aliases import Array
 
 LEAST_FOR_CORRELATION = 10
@@ -56,7 +56,7 @@ def rank_correlations(case: Case, column: Callable[[Quantity], Array | None]) ->
         case: whose variables and conditions.
         column: a quantity's values (n,) over the designs, NaN where there is none; None if it is not kept.
     """
-    everything = {quantity.key: quantity for quantity in all_quantities(case.conditions.froude_numbers)}
+    everything = {quantity.key: quantity for quantity in all_quantities(condition_names(case))}
     results = (*OBJECTIVES, *(everything[key] for key in _RESULTS if key in everything))
     free = tuple(free_variables(case))
     columns = {quantity.key: column(quantity) for quantity in (*free, *results)}

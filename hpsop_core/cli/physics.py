@@ -5,8 +5,10 @@ from __future__ import annotations
 import argparse
 import dataclasses
 import sys
+from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from hpsop_core.case.case import KNOT
 from hpsop_core.case.fields import FieldRule
 from hpsop_core.cli.arguments import (
     add_json,
@@ -25,6 +27,7 @@ from hpsop_core.model_test import MODEL_DIAMETER, MODEL_ROTATION_RATE, MODEL_VIS
 
 if TYPE_CHECKING:
     from hpsop_core.case.case import Case
+    from hpsop_core.case.design_numbers import ConditionResult
     from hpsop_core.geometry.hull.hull import Hull
     from hpsop_core.geometry.propeller.propeller import Propeller
 
@@ -106,18 +109,7 @@ def print_evaluation(result: Evaluation) -> None:
     )
     if hull.booked_volume is not None:
         print(f"booked (affine form): CB {hull.booked_block_coefficient:.4f}, volume {hull.booked_volume:,.0f} m3")
-    header = ["Fn", "V m/s", "Rf MN", "Rw MN", "Rt MN", "w", "t", "J", "n rpm", "KT", "10KQ", "eta0", "PD MW", "EAR"]
-    rows = [
-        [
-            f"{c.froude_number:.4f}", f"{c.speed:.3f}", f"{c.friction_resistance / 1e6:.3f}",
-            f"{c.wave_resistance / 1e6:.3f}", f"{c.total_resistance / 1e6:.3f}", f"{c.wake_fraction:.4f}",
-            f"{c.thrust_deduction:.4f}", f"{c.advance_coefficient:.4f}", f"{c.rotation_rate_rpm:.2f}",
-            f"{c.thrust_coefficient:.4f}", f"{10 * c.torque_coefficient:.4f}", f"{c.open_water_efficiency:.4f}",
-            f"{c.delivered_power / 1e6:.2f}", f"{c.required_expanded_area_ratio:.3f}",
-        ]
-        for c in result.conditions
-    ]  # fmt: skip
-    print_table(header, rows)
+    _print_conditions(result.conditions)
     for c in result.conditions:
         if c.blade_cavitation_margin is not None:
             print(
@@ -133,6 +125,36 @@ def print_evaluation(result: Evaluation) -> None:
     print(f"constraints (g <= 0): {limits}; {'feasible' if result.feasible else 'NOT feasible'}")
     for warning in result.warnings:
         print(f"warning: {warning}")
+
+
+def _print_conditions(conditions: Sequence[ConditionResult]) -> None:
+    """Resistance in its parts, which add up, and propulsion."""
+    parts = (
+        ("Rf", "friction_resistance"), ("k Rf", "form_resistance"), ("Rw", "wave_resistance"),
+        ("Ra", "correlation_resistance"), ("Raa", "air_resistance"), ("Rapp", "appendage_resistance"),
+        ("Rt", "total_resistance"),
+    )  # fmt: skip
+    print_table(
+        ["Fn", "V m/s", "V kn", *(f"{symbol} kN" for symbol, _ in parts)],
+        [
+            [f"{c.froude_number:.4f}", f"{c.speed:.3f}", f"{c.speed / KNOT:.2f}"]
+            + [f"{getattr(c, name) / 1e3:.1f}" for _, name in parts]
+            for c in conditions
+        ],
+    )
+    header = ["Fn", "w", "t", "J", "n rpm", "KT", "10KQ", "eta0", "etaH", "etaR", "etaD", "PE MW", "PD MW", "PB MW"]
+    rows = [
+        [
+            f"{c.froude_number:.4f}", f"{c.wake_fraction:.4f}", f"{c.thrust_deduction:.4f}",
+            f"{c.advance_coefficient:.4f}", f"{c.rotation_rate_rpm:.2f}", f"{c.thrust_coefficient:.4f}",
+            f"{10 * c.torque_coefficient:.4f}", f"{c.open_water_efficiency:.4f}", f"{c.hull_efficiency:.4f}",
+            f"{c.relative_rotative_efficiency:.4f}", f"{c.propulsive_efficiency:.4f}",
+            *(f"{(power or 0.0) / 1e6:.2f}" for power in (c.effective_power, c.delivered_power, c.brake_power)),
+            f"{c.required_expanded_area_ratio:.3f}",
+        ]
+        for c in conditions
+    ]  # fmt: skip
+    print_table([*header, "EAR"], rows)
 
 
 def _water(word: str | None) -> tuple[float | None, float | None]:

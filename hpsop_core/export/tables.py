@@ -74,16 +74,18 @@ def resistance_table(case: Case, evaluation: Evaluation, reference: Reference) -
     points = resistance_points(case, evaluation, reference)
     header = (
         "froude_number", "speed_m_s", "friction_coefficient", "wave_coefficient", "friction_resistance_N",
-        "wave_resistance_N", "total_resistance_N",
+        "wave_resistance_N", "total_resistance_N", "form_resistance_N", "correlation_resistance_N", "air_resistance_N",
+        "appendage_resistance_N",
     )  # fmt: skip
     rows = [
         (
             p.froude_number, p.speed, p.friction_coefficient, p.wave_coefficient, p.friction_resistance,
-            p.wave_resistance, p.total_resistance,
+            p.wave_resistance, p.total_resistance, p.form_resistance, p.correlation_resistance, p.air_resistance,
+            p.appendage_resistance,
         )
         for p in points
     ]  # fmt: skip
-    head = f"# level {evaluation.level}; total = (1 + {case.constants.form_factor:g}) friction + wave\n"
+    head = f"# level {evaluation.level}; total = friction + form + wave + correlation + air + appendage\n"
     return head + _csv(header, rows)
 
 

@@ -105,10 +105,11 @@ def form_factor(hull: HoltropHull) -> float:
         c12 = 48.20 * (slender - 0.02) ** 2.078 + 0.479948
     else:
         c12 = 0.479948
-    c13 = 1.0 + 0.003 * hull.stern_shape
+    c13: float = 1.0 + 0.003 * hull.stern_shape
     run: float = (hull.breadth / run_length(hull)) ** 0.92497
     ends: float = (0.95 - prismatic) ** -0.521448 * (1.0 - prismatic + 0.0225 * hull.buoyancy_centre) ** 0.6906
-    return c13 * (0.93 + c12 * run * ends) - 1.0
+    factor: float = c13 * (0.93 + c12 * run * ends) - 1.0
+    return factor
 
 
 def total_form_factor(hull: HoltropHull) -> float:

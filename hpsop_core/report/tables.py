@@ -23,6 +23,7 @@ from hpsop_core.quantities import (
     PROPELLER,
     Quantity,
     change_text,
+    condition_names,
     condition_quantities,
     free_variables,
     number_text,
@@ -35,8 +36,10 @@ from hpsop_core.typing_aliases import Array
 FAILURES_SHOWN = 40
 
 _IN_RESULT = (
-    "froude_number", "speed", "total_resistance", "wave_resistance", "delivered_power", "open_water_efficiency",
-    "advance_coefficient", "rotation_rate_rpm", "thrust", "torque", "required_expanded_area_ratio",
+    "froude_number", "speed", "total_resistance", "friction_resistance", "form_resistance", "wave_resistance",
+    "correlation_resistance", "air_resistance", "appendage_resistance", "effective_power", "delivered_power",
+    "brake_power", "open_water_efficiency", "hull_efficiency", "propulsive_efficiency", "wake_fraction",
+    "thrust_deduction", "advance_coefficient", "rotation_rate_rpm", "thrust", "torque", "required_expanded_area_ratio",
     "blade_cavitation_margin",
 )  # fmt: skip
 _ONLY_DIFFERENCES = ("blade_cavitation_margin", "f1", "f2")
@@ -44,7 +47,7 @@ _ONLY_DIFFERENCES = ("blade_cavitation_margin", "f1", "f2")
 
 def result_quantities(case: Case) -> tuple[Quantity, ...]:
     """The rows of the result table, in their order."""
-    conditions = condition_quantities(case.conditions.froude_numbers)
+    conditions = condition_quantities(condition_names(case))
     kept = tuple(q for q in conditions if q.key.rsplit("_", 1)[0] in _IN_RESULT)
     variables = variable_quantities(case.initial.variables)
     pitch = tuple(dataclasses.replace(q, group="Propeller") for q in variables if q.key == "pitch_ratio")
@@ -102,9 +105,7 @@ def front_table(case: Case, front: Sequence[DesignRecord], marks: Mapping[int, s
     free = free_variables(case)
     names = ("total_resistance", "open_water_efficiency", "delivered_power")
     per_condition = [
-        quantity
-        for quantity in condition_quantities(case.conditions.froude_numbers)
-        if quantity.key.rsplit("_", 1)[0] in names
+        quantity for quantity in condition_quantities(condition_names(case)) if quantity.key.rsplit("_", 1)[0] in names
     ]
     length = [quantity for quantity in HULL if quantity.key == "length"]
     columns = [*OBJECTIVES, *free, *length, *per_condition]

@@ -2,9 +2,10 @@
 
 from __future__ import annotations
 
-from hpsop_core.case.case import Case
+from hpsop_core.case.case import KNOT, Case
 from hpsop_core.case.constraints import CONSTRAINTS
 from hpsop_core.case.objectives import objective_named
+from hpsop_core.case.sections import ConstantsSection
 from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.evaluation.levels import FAST, TRUTH, level_of
 from hpsop_core.markup import Markup, fill, joined, one_line, symbol_html
@@ -21,7 +22,7 @@ _FORM: dict[str, Words] = {
     ),
 }
 _SPEED = {
-    "fixed": "Every design runs at the same speeds: the initial design's at the Froude numbers below.",
+    "fixed": "Every design runs at the same speeds, those below.",
     "froude": "Every design runs at the Froude numbers below on its own length, so a shorter ship is judged at a lower "
     "speed.",
 }
@@ -74,11 +75,11 @@ def assumptions(case: Case) -> Markup:
         fill("<strong>Constraints</strong>: {}.", joined(constraint_clauses(case), "; ")),
     ]
     conditions = table(
-        ["condition", "Froude number Fn", "weight"],
+        ["condition", "initial design's Froude number Fn", "its speed [kn]", "share of time"],
         [
-            [str(number), number_text(froude, 3), number_text(weight, 2)]
-            for number, (froude, weight) in enumerate(
-                zip(case.conditions.froude_numbers, case.conditions.weights, strict=True), start=1
+            [str(number), number_text(froude, 3), number_text(speed / KNOT, 2), number_text(weight, 3)]
+            for number, (froude, speed, weight) in enumerate(
+                zip(case.froude_numbers, case.speeds, case.conditions.weights, strict=True), start=1
             )
         ],
         caption="Operating conditions",
@@ -108,11 +109,16 @@ def _design_space(case: Case) -> Markup:
 
 def _constants(case: Case) -> Markup:
     c = case.constants
-    wake: Words = (
-        "Taylor's table for single-screw ships, quadratic fit"
-        if c.wake_formula == "taylor_quadratic"
-        else Markup("0.5 C<sub>B</sub> − 0.05")
-    )
+    left_out = [
+        words
+        for words, value in (
+            ("correlation allowance", c.correlation_allowance or c.correlation_allowance_formula != "stated"),
+            ("air drag", c.frontal_area * c.air_drag_coefficient),
+            ("appendages", c.appendage_factor),
+            ("sea margin", c.sea_margin),
+        )
+        if not value
+    ]
     return facts(
         [
             (
@@ -127,14 +133,61 @@ def _constants(case: Case) -> Markup:
                 f"atmosphere {number_text(1e-3 * c.atmospheric_pressure, 1)} kPa, "
                 f"vapour {number_text(1e-3 * c.vapour_pressure, 2)} kPa",
             ),
-            ("form factor k on friction", number_text(c.form_factor, 3)),
-            ("wake fraction w", wake),
-            ("thrust deduction t", f"{number_text(c.thrust_deduction_factor, 2)} w (Schoenherr)"),
-            ("relative rotative efficiency", number_text(c.relative_rotative_efficiency, 3)),
+            ("form factor k on friction", _form_factor(c)),
+            (
+                "correlation allowance",
+                "Holtrop and Mennen"
+                if c.correlation_allowance_formula == "holtrop"
+                else number_text(c.correlation_allowance, 6),
+            ),
+            (
+                "air drag",
+                f"coefficient {number_text(c.air_drag_coefficient, 2)} on {number_text(c.frontal_area, 0)} m² of the "
+                "initial design, in proportion to the breadth",
+            ),
+            ("appendages", f"{number_text(100.0 * c.appendage_factor, 1)} % of the flat-plate friction"),
+            ("wake fraction w", _wake(c)),
+            ("thrust deduction t", _thrust_deduction(c)),
+            (
+                "relative rotative efficiency",
+                "Holtrop and Mennen"
+                if c.relative_rotative_efficiency_formula == "holtrop"
+                else number_text(c.relative_rotative_efficiency, 3),
+            ),
+            ("sea margin", f"{number_text(100.0 * c.sea_margin, 1)} % on the brake power"),
+            ("shaft efficiency", number_text(c.shaft_efficiency, 3)),
             ("blade roughness", f"{number_text(1e6 * c.propeller_roughness, 0)} µm"),
-            ("not included", "correlation allowance, air drag, appendages, waves and wind, shallow water"),
+            ("not included", ", ".join([*left_out, "added resistance in waves and wind", "shallow water"])),
         ]
     )
+
+
+_CHANGE = "for the initial design, the others by the change of Holtrop and Mennen's"
+
+
+def _form_factor(c: ConstantsSection) -> str:
+    if c.form_factor_formula == "holtrop":
+        return "Holtrop and Mennen"
+    stated = number_text(c.form_factor, 3)
+    return stated if c.form_factor_formula == "stated" else f"{stated} {_CHANGE}"
+
+
+def _wake(c: ConstantsSection) -> Words:
+    if c.wake_formula == "stated":
+        return f"{number_text(c.stated_wake_fraction, 3)} {_CHANGE}"
+    return {
+        "taylor_quadratic": "Taylor's table for single-screw ships, quadratic fit",
+        "linear": Markup("0.5 C<sub>B</sub> − 0.05"),
+        "holtrop": "Holtrop and Mennen",
+    }[c.wake_formula]
+
+
+def _thrust_deduction(c: ConstantsSection) -> str:
+    if c.thrust_deduction_formula == "stated":
+        return f"{number_text(c.stated_thrust_deduction, 3)} {_CHANGE}"
+    if c.thrust_deduction_formula == "holtrop":
+        return "Holtrop and Mennen"
+    return f"{number_text(c.thrust_deduction_factor, 2)} w (Schoenherr)"
 
 
 def trust(case: Case, level: int | None) -> Markup:

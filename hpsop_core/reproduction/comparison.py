@@ -161,7 +161,7 @@ def tables(data: Reproduction) -> tuple[Table, ...]:
 
 def table1(case: Case) -> Table:
     """Conditions and weights."""
-    ours = list(zip(case.conditions.froude_numbers, case.conditions.weights, strict=True))
+    ours = list(zip(case.froude_numbers, case.conditions.weights, strict=True))
     rows = tuple(
         (f"condition {number}", froude, mine[0], weight, mine[1])
         for number, ((froude, weight), mine) in enumerate(zip(paper.table1(), ours, strict=True), start=1)

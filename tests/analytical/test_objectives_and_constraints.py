@@ -21,7 +21,7 @@ from hpsop_core.case.objectives import OBJECTIVES
 from hpsop_core.case.sections import ObjectivesSection
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
-from hpsop_core.quantities import all_quantities, objective_title, violated
+from hpsop_core.quantities import all_quantities, condition_names, objective_title, violated
 from hpsop_core.report.words import assumptions, objective_lines
 
 DOCS = Path(__file__).resolve().parents[2] / "docs"
@@ -114,7 +114,7 @@ def test_every_declaration_is_chosen_shown_and_explained(other: Evaluation) -> N
         lines = objective_lines(dataclasses.replace(CASE, objectives=chosen))
         assert objective.words in html.unescape(lines[0])
         assert f"| {objective.name} |" in reference and objective.words in reference
-    shown = {quantity.label: quantity for quantity in all_quantities(CASE.conditions.froude_numbers)}
+    shown = {quantity.label: quantity for quantity in all_quantities(condition_names(CASE))}
     spoken = html.unescape(assumptions(CASE))
     for constraint in CONSTRAINTS:
         assert shown[constraint.label].value(other) == other.constraints[constraint.name]

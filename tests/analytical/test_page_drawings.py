@@ -86,7 +86,7 @@ def test_each_pinned_design_is_compared_at_its_own_level(initial: Evaluation):
     table = many_table(
         {1: Shown("Initial design", initial), 2: Shown("Initial design", base)},
         [Shown("Design 7", initial), Shown("Design 8", other)],
-        (0.22, 0.27),
+        ("Fn 0.22", "Fn 0.27"),
     )
     row = re.search(r'<tr data-compare="f1">(.*?)</tr>', table)
     assert row

@@ -18,7 +18,7 @@ from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thrust_chart
 from hpsop_core.charts.search import convergence_chart
 from hpsop_core.evaluation.curves import hull_lines, resistance_points, thrust_curves
-from hpsop_core.quantities import all_quantities, number_text
+from hpsop_core.quantities import all_quantities, condition_names, number_text
 from hpsop_core.report.data import ReportData
 from hpsop_core.report.looks import COMPROMISE_LOOK, INITIAL_LOOK, SHEET
 from hpsop_core.report.report import report_html
@@ -84,7 +84,7 @@ def test_the_result_table_holds_the_runs_numbers(page: Page, run: RunReader) -> 
     named: dict[str, list[list[str]]] = {}
     for row in rows[1:]:
         named.setdefault(row[0].split("[")[0].strip(), []).append(row[1:])
-    quantities = {quantity.key: quantity for quantity in all_quantities(run.case.conditions.froude_numbers)}
+    quantities = {quantity.key: quantity for quantity in all_quantities(condition_names(run.case))}
     for key in ("delivered_power_1", "delivered_power_2", "total_resistance_1", "open_water_efficiency_2", "length"):
         quantity = quantities[key]
         cells = named[f"{quantity.label} {quantity.symbol.replace('_', '')}"][0]
