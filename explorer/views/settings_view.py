@@ -187,6 +187,8 @@ class SettingsView:
             widget = self._gui.add_text(label, _list_text(value), hint=hint)
         elif rule.kind == "flag":
             widget = self._gui.add_checkbox(label, value, hint=hint)
+        elif rule.optional:
+            widget = self._gui.add_text(label, _optional_text(value), hint=f"{hint}; empty: not stated")
         elif rule.kind == "integer":
             widget = self._gui.add_number(label, value, min=int(rule.lower), max=int(rule.upper), step=1, hint=hint)
         else:
@@ -235,12 +237,15 @@ class SettingsView:
             # two lists that belong together are changed one after the other: the whole is judged at Start
             self._app.change_draft(lambda draft: draft.set(section, name, value))
         else:
-            checked = checked_value(value, rule, f"{section}: {name}")
+            given = _optional_number(value) if rule.optional else value
+            checked = checked_value(given, rule, f"{section}: {name}")
             self._app.change_draft(lambda draft: draft.set(section, name, checked))
 
     def _show_field(self, section: str, name: str) -> None:
         widget, value = self._widgets[(section, name)], self._app.draft.value(section, name)
         shown = _list_text(value) if isinstance(value, tuple) else value
+        if rules(type(getattr(self._app.draft.base, section)))[name].optional:
+            shown = _optional_text(value)
         set_value(widget, shown)
 
     # ---- presets ---------------------------------------------------------------------------------------------------
@@ -333,3 +338,17 @@ class SettingsView:
 
 def _list_text(values: tuple[float, ...]) -> str:
     return ", ".join(f"{value:.12g}" for value in values)
+
+
+def _optional_text(value: float | None) -> str:
+    return "" if value is None else f"{value:.12g}"
+
+
+def _optional_number(value: object) -> object:
+    """What a browser sent for a number that may be left out: nothing at all, a number, or what it sent."""
+    if not isinstance(value, str):
+        return value
+    try:
+        return float(value) if value.strip() else None
+    except ValueError:
+        return value[:40]

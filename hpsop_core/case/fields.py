@@ -107,6 +107,8 @@ def checked_value(value: object, rule: FieldRule, where: str) -> Any:
     Raises:
         InputError: wrong type, NaN or infinite, outside the limits, or no option.
     """
+    if value is None and rule.optional:
+        return None
     if rule.kind == "flag":
         if not isinstance(value, bool):
             raise InputError(f"{where}: {value!r} is not true or false; write true or false")

@@ -145,6 +145,21 @@ def test_values_no_widget_could_send_are_refused_in_words(explorer: Explorer, ho
     assert explorer.services.runs.workers == 1
 
 
+def test_a_number_that_may_be_left_out_is_typed_and_taken_away(explorer: Explorer, hostile: Hostile) -> None:
+    wake = explorer.settings._widgets[("constants", "stated_wake_fraction")]
+    draft = explorer.state.draft
+    assert wake.value == ""
+    for text in ("0,2", "nan", "0.9"):
+        refused = hostile.refused(wake, value=text)
+        assert "not a" in refused or "outside its limits" in refused
+        assert wake.value == ""
+    explorer.settings.set_field("constants", "stated_wake_fraction", "0.25")
+    assert draft.case().constants.stated_wake_fraction == 0.25
+    explorer.settings.set_field("constants", "stated_wake_fraction", " ")
+    assert draft.case().constants.stated_wake_fraction is None
+    draft.reset_all()
+
+
 def test_a_typed_number_out_of_range_is_refused_when_the_typing_rests(explorer: Explorer, hostile: Hostile) -> None:
     population = explorer.settings._widgets[("optimization", "population")]
     draft, before = explorer.state.draft, explorer.state.draft.case()
