@@ -20,7 +20,7 @@ A case is a TOML file. `hpsop evaluate CASE` takes a shipped case's name or such
 *Save case*. Unknown fields, reversed bounds, NaN and numbers outside their limits are refused in one line. This page is
 made from the code by `python -m tools.case_reference > docs/case.md`; a test compares them.
 
-Files that a case names (`offsets`, `stl`, `geometry`) are relative to the case file.
+Files that a case names (`file`, `offsets`, `stl`, `geometry`) are relative to the case file.
 """
 
 _BOUNDS = """

@@ -11,7 +11,9 @@ from typing import Any
 
 from hpsop_core.assets import asset_path
 from hpsop_core.case.fields import checked_value, read_section, rules, section_table, toml_text, unknown_name
+from hpsop_core.case.own_hull import own_dimensions
 from hpsop_core.case.sections import (
+    OWN_FILES,
     ConditionsSection,
     ConstantsSection,
     ConstraintsSection,
@@ -214,8 +216,9 @@ def _assembled(tables: Mapping[str, Any], texts: Mapping[str, Any], where: str, 
         stated = {**tables, "conditions": ConditionsSection.completed(tables.get("conditions", {}))}
         sections = {name: read_section(section, stated.get(name, {}), name) for name, section in SECTIONS.items()}
         if folder is not None:
-            sections["hull"] = _absolute(sections["hull"], "hull", ("offsets", "stl"), folder)
+            sections["hull"] = _absolute(sections["hull"], "hull", OWN_FILES, folder)
             sections["propeller"] = _absolute(sections["propeller"], "propeller", ("geometry",), folder)
+        sections["initial"] = _own_dimensions(sections["hull"], sections["initial"], tables["initial"])
         bounds = dict(tables["bounds"])
         for name, variable in VARIABLE_TABLE.items():
             if not variable.bounds_required:
@@ -229,6 +232,15 @@ def _assembled(tables: Mapping[str, Any], texts: Mapping[str, Any], where: str, 
         )
     except InputError as error:
         raise InputError(f"{where}: {error}") from error
+
+
+def _own_dimensions(hull: HullSection, initial: InitialSection, stated: Mapping[str, Any]) -> InitialSection:
+    """An initial design without length, breadth or draft has those of the hull of one's own."""
+    missing = [name for name in ("length", "breadth", "draft") if name not in stated]
+    if not hull.own_file or not missing:
+        return initial
+    own: dict[str, Any] = {name: value for name, value in own_dimensions(hull).items() if name in missing}
+    return dataclasses.replace(initial, **own)
 
 
 def _absolute(section: Any, where: str, names: tuple[str, ...], folder: Path) -> Any:

@@ -13,20 +13,37 @@ from hpsop_core.case.fields import choice, flag, integer, number, numbers, optio
 from hpsop_core.case.objectives import OBJECTIVE_NAMES
 from hpsop_core.case.variables import DesignVariables, StatedVariables
 from hpsop_core.errors import InputError
+from hpsop_core.geometry.hull.input.options import BOWS, ORIGINS, UNITS, UPS, WATERLINES, Axes, ReadOptions
+
+# Fields of [hull] that name a file.
+OWN_FILES = ("file", "offsets", "stl")
 
 
 @dataclass(frozen=True)
 class HullSection:
-    """Which parent hull, and how a design is made from it."""
+    """Which parent hull, and how a design is made from it. Fields from `unit` to `up` say how a file is to be read."""
 
-    parent: str = choice("dtc", SHIPPED_HULLS, "a shipped hull's name; leave it when offsets or stl names a file")
-    offsets: str = text("", "an offsets table (station_x_m,waterline_z_m,half_breadth_m) instead of a shipped hull")
-    stl: str = text("", "a closed STL of the hull instead of a shipped hull")
+    parent: str = choice("dtc", SHIPPED_HULLS, "a shipped hull's name; leave it when file, offsets or stl names a file")
+    file: str = text("", "a hull of one's own: table, mesh, 3dm, STEP or IGES (docs/bring-your-ship.md)")
+    offsets: str = text("", "earlier name of file, for a table of offsets")
+    stl: str = text("", "earlier name of file, for a mesh")
     stl_unit: str = choice(
-        "unstated", ("unstated", "m", "mm", "cm", "ft", "in"), "the STL's unit of length; to be stated with stl"
+        "unstated", ("unstated", "m", "mm", "cm", "ft", "in"), "earlier name of unit; to be stated with stl"
     )
-    length: float | None = optional_number(0.1, 600.0, "Lpp of the offsets or STL", "m")
-    draft: float | None = optional_number(0.005, 40.0, "waterline of the offsets or STL above z = 0", "m")
+    length: float | None = optional_number(0.1, 600.0, "Lpp of the hull in the file", "m")
+    draft: float | None = optional_number(0.005, 40.0, "still water of the hull in the file, above the baseline", "m")
+    breadth: float | None = optional_number(0.02, 100.0, "breadth of a table in fractions of B/2", "m")
+    unit: str = choice("auto", ("auto", *UNITS), "the file's unit of length; auto: what it states, else metres")
+    bow: str = choice("auto", BOWS, "the end of x at which the file has the bow; auto: what it states, else +x")
+    origin: str = choice("auto", ORIGINS, "where the file has x = 0; auto: what it states, else ap")
+    waterline: str = choice("auto", WATERLINES, "z = 0 of the file: the baseline (draft), or the still water (z0)")
+    up: str = choice("auto", UPS, "the axis of a mesh that points up; auto: found from the form")
+    shaft_height: float | None = optional_number(
+        0.0, 40.0, "the shaft above the baseline at the hull's own draft; else found from the boss, or assumed", "m"
+    )
+    boss_x: float | None = optional_number(
+        -50.0, 600.0, "where the propeller's hub begins, from AP; else found from boss or stern profile", "m"
+    )
     form: str = choice(
         "shift",
         ("shift", "affine"),
@@ -34,12 +51,25 @@ class HullSection:
     )
 
     def __post_init__(self) -> None:
-        if self.offsets and self.stl:
-            raise InputError("hull: both offsets and stl are given; keep one of them")
-        if (self.offsets or self.stl) and (self.length is None or self.draft is None):
+        given = [name for name in OWN_FILES if getattr(self, name)]
+        if len(given) > 1:
+            raise InputError(f"hull: both {given[0]} and {given[1]} are given; keep one of them")
+        if given and (self.length is None or self.draft is None):
             raise InputError("hull: a hull from a file needs length (Lpp) and draft, in metres")
-        if self.stl and self.stl_unit == "unstated":
-            raise InputError('hull: an STL carries no unit; add stl_unit = "m" (or mm, cm, ft, in)')
+        if self.stl and self.stl_unit == "unstated" and self.unit == "auto":
+            raise InputError('hull: an STL carries no unit; add unit = "m" (or mm, cm, ft, in)')
+
+    @property
+    def own_file(self) -> str:
+        """The file of a hull of one's own, or "" for a shipped one."""
+        return self.file or self.offsets or self.stl
+
+    @property
+    def read_options(self) -> ReadOptions:
+        """How the file is to be read."""
+        unit = self.unit if self.unit != "auto" else self.stl_unit if self.stl and self.stl_unit != "unstated" else None
+        axes = Axes(self.bow, self.origin, self.waterline, self.up)
+        return ReadOptions(self.length, self.draft, self.breadth, unit, axes)
 
 
 @dataclass(frozen=True)

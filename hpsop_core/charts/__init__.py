@@ -12,6 +12,7 @@ Lowest first; each room uses those above it:
 * ``propulsion``: open water, resistance, thrust.
 * ``hulls``: body plan, sectional areas.
 * ``search``: Pareto chart, convergence, evolution of fronts.
+* ``own_files``: what was understood of a hull or propeller file, on one ``sheet``; ``raster`` makes a PNG of that.
 * ``correlations``: Spearman's rank correlation as a table.
 
 What answers to a pointer (picks, brushes) is the page's own and stands there; here is nothing of a browser or a run.

@@ -25,12 +25,12 @@ class _Parser(argparse.ArgumentParser):
 def build_parser() -> argparse.ArgumentParser:
     """The parser of every sub-command; each sets ``handler``, a function of the parsed arguments."""
     # Imported here so that `hpsop --version` and mistakes in the words of a command answer at once.
-    from hpsop_core.cli import export, physics, runs
+    from hpsop_core.cli import export, own_files, physics, runs
 
     parser = _Parser(prog="hpsop", description="Optimise a ship's hull and its propeller together.")
     parser.add_argument("--version", action="version", version=f"hpsop {__version__}")
     commands = parser.add_subparsers(dest="command", required=True, metavar="COMMAND", parser_class=_Parser)
-    for room in (physics, runs, export):
+    for room in (own_files, physics, runs, export):
         room.add_parsers(commands)
     return parser
 

@@ -21,8 +21,10 @@ from hpsop_core.cli.arguments import (
     print_json,
     print_table,
 )
+from hpsop_core.cli.own_files import add_reading, read_options
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.geometry.hull.input.options import ReadOptions
 from hpsop_core.model_test import MODEL_DIAMETER, MODEL_ROTATION_RATE, MODEL_VISCOSITY
 
 if TYPE_CHECKING:
@@ -43,12 +45,12 @@ def add_parsers(commands: Any) -> None:
 
     resistance = commands.add_parser("resistance", help="resistance of a hull over Froude numbers")
     resistance.add_argument("case", metavar="CASE", nargs="?", help="a shipped case's name or a TOML file")
-    resistance.add_argument("--offsets", metavar="FILE.csv", help="station_x_m,waterline_z_m,half_breadth_m, in metres")
-    resistance.add_argument("--length", metavar="L", help="Lpp in m, with --offsets")
-    resistance.add_argument("--draft", metavar="D", help="waterline above z = 0 in m, with --offsets")
+    resistance.add_argument("--offsets", metavar="FILE.csv", help="a table of offsets; as --hull")
+    resistance.add_argument("--hull", metavar="FILE", help="table, STL, OBJ, PLY, OFF, GLB, 3dm, STEP or IGES")
+    add_reading(resistance)
     resistance.add_argument("--froude", metavar="F[,F...]", required=True, help="Froude numbers V/sqrt(g Lpp)")
-    resistance.add_argument("--form-factor", metavar="K", help="k on ITTC-57; the case's, or 0 with --offsets")
-    resistance.add_argument("--water", metavar="salt|fresh|RHO,NU", help="the case's, or salt with --offsets")
+    resistance.add_argument("--form-factor", metavar="K", help="k on ITTC-57; the case's, or 0 with a file")
+    resistance.add_argument("--water", metavar="salt|fresh|RHO,NU", help="the case's, or salt with a file")
     add_level(resistance)
     add_set(resistance)
     add_json(resistance)
@@ -178,21 +180,25 @@ def _resistance(arguments: argparse.Namespace) -> int:
 
     froude_numbers = number_list(arguments.froude, FROUDE_RULE, "--froude")
     form_factor = checked_option(arguments.form_factor, FORM_FACTOR_RULE, "--form-factor")
-    if (arguments.case is None) == (arguments.offsets is None):
-        raise InputError("resistance: give either a CASE or --offsets FILE.csv with --length and --draft")
+    files = [word for word in (arguments.offsets, arguments.hull) if word is not None]
+    if len(files) + (arguments.case is not None) != 1:
+        raise InputError(
+            "resistance: give either a CASE, or --hull FILE (or --offsets FILE.csv) with --length and --draft"
+        )
     subject: Case | Hull
     variables = None
-    if arguments.offsets is not None:
-        if arguments.length is None or arguments.draft is None:
-            raise InputError("resistance: --offsets needs --length (Lpp) and --draft, in metres")
+    options = read_options(arguments)
+    if files:
+        if options.length is None or options.draft is None:
+            raise InputError("resistance: a hull file needs --length (Lpp) and --draft, in metres")
         if arguments.changes:
-            raise InputError("resistance: --set changes a case's design; an offsets table is taken as it is")
-        length = checked_option(arguments.length, FieldRule("number", "", "m", 0.1, 600.0), "--length")
-        draft = checked_option(arguments.draft, FieldRule("number", "", "m", 0.005, 40.0), "--draft")
-        subject = load_hull(arguments.offsets, length, draft)
+            raise InputError("resistance: --set changes a case's design; a hull file is taken as it is")
+        subject = load_hull(files[0], options.length, options.draft, options.unit, options.axes, options.breadth)
     else:
-        if arguments.length is not None or arguments.draft is not None:
-            raise InputError("resistance: --length and --draft go with --offsets; change a case by --set")
+        if options != ReadOptions():
+            raise InputError(
+                "resistance: --length, --draft, --breadth, --unit and --axes go with a file; change a case by --set"
+            )
         subject, variables = case_and_design(arguments.case, arguments.changes)
     density, viscosity = _water(arguments.water)
     result = resistance(

@@ -5,13 +5,13 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from pathlib import Path
 
+from hpsop_core.case.own_hull import own_table
 from hpsop_core.case.sections import HullSection
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.evaluation.levels import WaveAnswer, level_of
 from hpsop_core.geometry.hull.hull import Hull, ParentHull, load_parent_hull
-from hpsop_core.geometry.hull.input import parent_hull_from_offsets, parent_hull_from_stl
+from hpsop_core.geometry.hull.input import hull_from_table
 from hpsop_core.hydro.friction import ittc57_coefficient
 from hpsop_core.hydro.powering import ResistanceFactors, resistance_parts
 
@@ -64,12 +64,8 @@ def parent_hull(section: HullSection) -> ParentHull:
     Raises:
         InputError: a file that cannot be used.
     """
-    if section.offsets or section.stl:
-        if section.length is None or section.draft is None:
-            raise ValueError("HullSection refuses this")
-        if section.offsets:
-            return parent_hull_from_offsets(Path(section.offsets), section.length, section.draft)
-        return parent_hull_from_stl(Path(section.stl), section.stl_unit, section.draft, section.length)
+    if section.own_file:
+        return hull_from_table(own_table(section), section.shaft_height, section.boss_x).parent
     return load_parent_hull(section.parent)
 
 

@@ -3,6 +3,7 @@
 * hull, propeller: a folder each, from a table to patches, panels and meshes
 * nurbs: the surfaces that both are made of
 * clearance: where the propeller stands behind the hull, and how far its blades stay clear of it
+* delimited_text: tables as text, whatever their separators, decimal marks and encoding
 * from_files: a hull or a propeller from a user's file, ready to be computed
 * analytic_bodies: panels of bodies whose flow is known in closed form
 """

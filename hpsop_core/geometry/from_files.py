@@ -7,30 +7,39 @@ from pathlib import Path
 from hpsop_core.assets import SHIPPED_HULLS, SHIPPED_PROPELLERS
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.hull.hull import Hull, load_parent_hull
-from hpsop_core.geometry.hull.input import parent_hull_from_offsets, parent_hull_from_stl
+from hpsop_core.geometry.hull.input import Axes, ReadOptions, read_hull
 from hpsop_core.geometry.propeller import propeller as propellers
 from hpsop_core.geometry.propeller.propeller import Propeller, propeller_family
 from hpsop_core.model_test import MODEL_DIAMETER
 
 FEWEST_BLADES, MOST_BLADES = 2, 7
+# Meshes that say nothing of their unit.
+UNITLESS_SUFFIXES = (".stl", ".obj", ".ply", ".off")
 
 
 def load_hull(
-    source: str | Path, length: float | None = None, draft: float | None = None, unit: str | None = None
+    source: str | Path,
+    length: float | None = None,
+    draft: float | None = None,
+    unit: str | None = None,
+    axes: str | Axes = "",
+    breadth: float | None = None,
 ) -> Hull:
-    """A hull from a table of offsets or a closed mesh, or a shipped one.
+    """A hull from a file, or a shipped one.
 
     Args:
-        source: a CSV file with ``station_x_m,waterline_z_m,half_breadth_m``, an STL file, or a shipped hull's name
-            ("dtc").
+        source: a table of offsets, an STL, OBJ, PLY, OFF, GLB, 3dm, STEP or IGES file (docs/bring-your-ship.md), or a
+            shipped hull's name ("dtc").
         length: Lpp in m; needed with a file, which is never scaled to it.
-        draft: waterline above z = 0 in m; needed with a file.
-        unit: of an STL's coordinates: "m", "mm", "cm", "ft" or "in". A table is in metres.
+        draft: still water above the baseline in m; needed with a file.
+        unit: of the file's lengths: "m", "mm", "cm", "ft", "in" or "ft-in-8"; needed with an STL, OBJ, PLY or OFF.
+        axes: how the file's axes lie in the ship, for example "bow=-x,origin=fp,waterline=z0".
+        breadth: in m, of a table in fractions of B/2 that does not state it.
 
     Returns:
         The hull at its own dimensions, frozen. ``hull.hydrostatics`` has its figures, ``hull.parent.fit_report`` how
         far the surface leaves the points that it was fitted to (None for a shipped hull), ``hull.warnings`` what to
-        look at.
+        look at; ``geometry.hull.input.read_hull`` says all that was understood.
 
     Raises:
         InputError: a file that cannot be used; one line with file, row and remedy.
@@ -43,14 +52,16 @@ def load_hull(
         path = Path(source)
         if length is None or draft is None:
             raise InputError(f"{path.name}: a hull from a file needs length (Lpp) and draft, in metres")
-        if path.suffix.lower() == ".stl":
-            if unit is None:
-                raise InputError(f"{path.name}: an STL carries no unit; give unit m, mm, cm, ft or in")
-            parent = parent_hull_from_stl(path, unit, draft, length)
-        else:
-            if unit not in (None, "m"):
-                raise InputError(f"{path.name}: a table of offsets is in metres, not '{unit}'; convert it")
-            parent = parent_hull_from_offsets(path, length, draft)
+        if path.suffix.lower() in UNITLESS_SUFFIXES and unit is None:
+            kind = path.suffix[1:].upper()
+            raise InputError(f"{path.name}: an {kind} carries no unit; give unit m, mm, cm, ft or in")
+        try:
+            options = ReadOptions(
+                length, draft, breadth, unit, axes if isinstance(axes, Axes) else Axes.from_words(axes)
+            )
+        except InputError as problem:
+            raise InputError(f"{path.name}: {problem}") from problem
+        parent = read_hull(path, options).parent
     return parent.transform(parent.length, parent.breadth, parent.draft)
 
 

@@ -52,7 +52,7 @@ def constraint_clauses(case: Case) -> list[Markup]:
 def assumptions(case: Case) -> Markup:
     """Form, speed, conditions, objectives, constraints with their level, calibration and constants."""
     hull, propeller, constants = case.hull, case.propeller, case.constants
-    hull_file = hull.offsets or hull.stl
+    hull_file = hull.own_file
     own_hull = f"own hull from {hull_file}" if hull_file else f"parent hull {hull.parent}"
     own_blades = (
         f"own propeller from {propeller.geometry}" if propeller.geometry else f"parent propeller {propeller.parent}"
@@ -213,7 +213,7 @@ def trust(case: Case, level: int | None) -> Markup:
         lines.append(
             "Designs of different lengths are compared at different speeds; at one contract speed the order may differ."
         )
-    if case.hull.offsets or case.hull.stl or case.propeller.geometry:
+    if case.hull.own_file or case.propeller.geometry:
         lines.append(
             Markup(
                 "<strong>Own geometry.</strong> The checks below were made with the DTC and P4119; none was made with "

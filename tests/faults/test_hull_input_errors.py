@@ -12,7 +12,13 @@ import trimesh
 
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.hull.hull import load_parent_hull
-from hpsop_core.geometry.hull.input import _check_between, parent_hull_from_offsets, parent_hull_from_stl
+from hpsop_core.geometry.hull.input import (
+    ReadOptions,
+    parent_hull_from_offsets,
+    parent_hull_from_stl,
+    read_table,
+)
+from hpsop_core.geometry.hull.input.surface_checks import check_between
 
 LENGTH, DRAFT = 100.0, 6.25
 
@@ -123,15 +129,15 @@ def test_a_surface_that_swings_between_the_points_is_refused(tmp_path: Path) -> 
     path = tmp_path / "hull.csv"
     path.write_text("\n".join(good_lines()) + "\n")
     parent = parent_hull_from_offsets(path, LENGTH, DRAFT)
-    x, z = np.linspace(0.0, LENGTH, 11), np.linspace(0.0, 8.0, 9)
-    rows = {float(station): 2 + 9 * k for k, station in enumerate(x)}
-    _check_between(parent, "hull.csv", x, z, rows)
+    table = read_table(path, ReadOptions(length=LENGTH, draft=DRAFT))
+    check_between(parent, table)
     with pytest.raises(InputError, match=r"row \d+: near station .* below the lowest waterline .* add stations"):
-        _check_between(parent, "hull.csv", x, z + 1.0, rows)
+        check_between(parent, replace(table, z=table.z + 1.0))
+    table = replace(table, rows=None)
     with pytest.raises(InputError, match="above the draft"):
-        _check_between(replace(parent, draft=0.9 * DRAFT), "hull.csv", x, z, {})
+        check_between(replace(parent, draft=0.9 * DRAFT), table)
     with pytest.raises(InputError, match="outside the greatest half-breadth"):
-        _check_between(replace(parent, breadth=0.9 * parent.breadth), "hull.csv", x, z, {})
+        check_between(replace(parent, breadth=0.9 * parent.breadth), table)
 
 
 def test_missing_and_binary_files(tmp_path: Path) -> None:

@@ -2,13 +2,16 @@
 
 from __future__ import annotations
 
+import json
 from pathlib import Path
 
 import numpy as np
 import pytest
 
 from hpsop_core.assets import read_asset_text
+from hpsop_core.cli.main import main
 from hpsop_core.errors import InputError
+from hpsop_core.geometry.propeller.input import read_propeller
 from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family, radial_table_from_csv
 from hpsop_core.geometry.propeller.radial_table import RadialTable
 from hpsop_core.hydro.section_drag import SectionDrag
@@ -96,6 +99,59 @@ def test_good_tables_are_read(tmp_path: Path) -> None:
     shipped = tmp_path / "p4119.csv"
     shipped.write_text(read_asset_text("propellers", "p4119.csv"), encoding="utf-8")
     assert np.array_equal(radial_table_from_csv(shipped).thickness_ratio, load_propeller().thickness_ratio)
+
+
+def _openprop() -> str:
+    """The geometry table that OpenProp writes: a title, columns apart by several tabs, a legend."""
+    head = "\t\t\t OpenProp_Geometry.txt\n\nPropeller Diameter \t= 0.3048 m\nNumber of Blades \t= 3\n\n"
+    names = "r/R\t  P/D\t\tSkew\tXs/D\t\tc/D\t\tf0/c\t\tt0/c\n"
+    order = [0, 2, 3, 4, 1, 6, 5]
+    rows = "".join("\t\t".join(row.split(",")[i] for i in order) + "\n" for row in ROWS)
+    return head + names + rows + "\nr/R  \t [ ], radial position.\nSkew [deg], skew.\n"
+
+
+def _over_diameter() -> str:
+    """t/D for t/c, no skew, no rake, semicolons and decimal commas."""
+    lines = ["r/R;c/D;P/D;t/D;f/c"]
+    for row in ROWS:
+        r, c, pitch, _, _, thickness, camber = row.split(",")
+        lines.append(";".join([r, c, pitch, f"{float(thickness) * float(c):.6f}", camber]).replace(".", ","))
+    return "\n".join(lines) + "\n"
+
+
+LAYOUTS = {
+    "quoted": "\n".join(",".join(f'"{cell}"' for cell in line.split(",")) for line in (HEADER, *ROWS)) + "\n",
+    "OpenProp": _openprop(),
+    "t/D, decimal commas": _over_diameter(),
+    "sep line": "sep=;\n" + "\n".join((HEADER, *ROWS)).replace(",", ";") + "\n",
+    "other names": "\n".join(["radius,chord/D,pitch/D,skew [deg],rake/D,t/c,camber", *ROWS]) + "\n",
+}
+
+
+@pytest.mark.parametrize("layout", LAYOUTS)
+def test_every_layout_is_the_same_blade(tmp_path: Path, layout: str) -> None:
+    base = radial_table_from_csv(write(tmp_path, [HEADER, *ROWS]), 3)
+    file = tmp_path / "other.txt"
+    file.write_text(LAYOUTS[layout], encoding="utf-8-sig")
+    told = read_propeller(file, 3)
+    for name in ("radius_ratio", "chord_ratio", "pitch_ratio", "skew", "rake_ratio", "camber_ratio"):
+        assert np.array_equal(getattr(told.table, name), getattr(base, name)), name
+    # t/D is written with six digits.
+    assert told.table.thickness_ratio == pytest.approx(base.thickness_ratio, rel=1e-4)
+    if layout.startswith("t/D"):
+        assert "no column of skew: 0" in told.assumed and "no column of rake: 0" in told.assumed
+        assert any("t/c from column 't/D'" in line for line in told.assumed)
+
+
+def test_the_propeller_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+    file = write(tmp_path, [HEADER, *ROWS])
+    picture = tmp_path / "blade.png"
+    assert main(["propeller", str(file), "--blades", "4", "--picture", str(picture), "--json"]) == 0
+    told = json.loads(capsys.readouterr().out)
+    assert told["blade_count"] == 4 and told["hub_ratio"] == 0.2
+    assert told["expanded_area_ratio"] == pytest.approx(4.0 * radial_table_from_csv(file).expanded_area_ratio_per_blade)
+    assert picture.read_bytes().startswith(b"\x89PNG")
+    assert main(["propeller", str(file), "--blades", "9"]) == 2
 
 
 @pytest.mark.parametrize(

@@ -34,13 +34,30 @@ def _boss(fits: dict[str, PatchFit], height: float) -> float:
     return best if np.isfinite(best) else min(_extent(fit)[0] for fit in fits.values())
 
 
+def _boss_height(skeg: PatchFit) -> float | None:
+    """Height of the widest place of a skeg's aft end, m; None where it is widest at its bottom or top: no boss."""
+    section = skeg.surface.evaluate(np.array([0.0]), np.linspace(0.0, 1.0, 201))[0]
+    widest = int(np.argmax(section[:, 1]))
+    low, high, height = float(section[0, 2]), float(section[-1, 2]), float(section[widest, 2])
+    return height if 0.15 < (height - low) / max(high - low, 1e-12) < 0.85 else None
+
+
 @one_blas_thread()
-def parent_from_table(table: HalfBreadths, length: float, draft: float) -> ParentHull:
+def parent_from_table(
+    table: HalfBreadths, length: float, draft: float, shaft_height: float | None = None, boss_x: float | None = None
+) -> ParentHull:
     """A parent hull with its fit report.
 
-    The shaft stands at 5.0/14.5 of the draft, the boss ends where the aft profile meets that height. Sections may move
-    between 2.5 % of the body's length forward of the boss and 2 % aft of the fore end of the waterline, about the
-    middle of the fullest sections.
+    Sections may move between 2.5 % of the body's length forward of the boss and 2 % aft of the fore end of the
+    waterline, about the middle of the fullest sections.
+
+    Args:
+        table: the hull.
+        length, draft: m.
+        shaft_height: of the shaft's axis above the baseline, m; None: the widest place of a boss, where the table has
+            one, else 5.0/14.5 of the draft.
+        boss_x: where the propeller's hub begins, m from AP; None: the aft end of a skeg, else where the aft profile
+            meets the shaft's height.
 
     Raises:
         InputError: the table cannot be made into a hull.
@@ -55,14 +72,17 @@ def parent_from_table(table: HalfBreadths, length: float, draft: float) -> Paren
         sides = fit_patches(above, fits)
     except (ValueError, np.linalg.LinAlgError) as problem:
         raise InputError(f"{table.name}: no smooth surface through these stations ({problem})") from problem
-    shaft = SHAFT_HEIGHT_TO_DRAFT * draft
-    boss = _boss(fits, shaft) if "skeg" not in fits else _extent(fits["skeg"])[0]
+    own_height = _boss_height(fits["skeg"]) if "skeg" in fits else None
+    shaft = next(height for height in (shaft_height, own_height, SHAFT_HEIGHT_TO_DRAFT * draft) if height is not None)
+    boss = boss_x
+    if boss is None:
+        boss = _boss(fits, shaft) if "skeg" not in fits else _extent(fits["skeg"])[0]
     frame = _shift_frame(fits, boss, length)
     plans = [*below, *above]
     rough = ParentHull(
         name=table.name,
         length=length,
-        breadth=_breadth(table, draft),
+        breadth=moulded_breadth(table, draft),
         draft=draft,
         deck_height=deck_height(table, draft),
         shaft_height=shaft,
@@ -92,7 +112,7 @@ def _extent(fit: PatchFit) -> tuple[float, float]:
     return float(net[0, 0, 0]), float(net[-1, 0, 0])
 
 
-def _breadth(table: HalfBreadths, draft: float) -> float:
+def moulded_breadth(table: HalfBreadths, draft: float) -> float:
     """The greatest breadth in the water, m: at the draft itself too, which may lie between two waterlines."""
     found = [table_station(float(x), table.z, row, draft) for x, row in zip(table.x, table.y, strict=True)]
     return 2.0 * max(float(np.max(station.points[:, 0])) for station in found if station is not None)

@@ -52,6 +52,8 @@ LEAST_HALF_BREADTH = 1e-7
 HEIGHT_ROOM = 0.15
 # Upright sides where the table ends at the waterline, as a part of the draft.
 WALL_HEIGHT_TO_DRAFT = 0.5
+# A further knot this far, in v, from the ends of a post.
+CORNER = 0.012
 SKEG_KNOTS = tuple(float(knot) for knot in np.linspace(0.15, 0.85, 6))
 TOPSIDES_KNOTS = (0.25, 0.5, 0.75)
 
@@ -90,6 +92,16 @@ class _Division:
         return self.opening if self.opening is not None else self.pillar
 
     @property
+    def ends_at_post(self) -> bool:
+        """The table ends at the stern post itself: the hull above it ends there too, flat."""
+        return self.pillar is not None and self.pillar == self.aft and self.counter_end.x >= self.stations[self.aft].x
+
+    @property
+    def counter_end(self) -> HullEnd:
+        """How the counter ends."""
+        return hull_end(self.table, self.stations[self.aft : (self.border or 0) + 2], False, self.draft)
+
+    @property
     def first(self) -> int:
         """The main patch's first station."""
         return self.aft if self.border is None else self.border
@@ -116,7 +128,7 @@ def underwater_plans(table: HalfBreadths, draft: float) -> list[PatchPlan]:
     plans = [main]
     if bulb_part > 0.0:
         plans.append(_bulb(division, bulb_part))
-    if division.border is not None:
+    if division.border is not None and not division.ends_at_post:
         plans.append(_counter(division, division.border, post[1]))
     if division.opening is not None:
         plans.append(_skeg(division, division.opening, post[0]))
@@ -145,10 +157,10 @@ def _main(division: _Division) -> tuple[PatchPlan, float, tuple[float, float]]:
         border = stations[division.border]
         if division.opening is not None:
             points, post = _with_aperture(border)
-            interior = knots_with(interior, *post)
+            interior = _with_corners(knots_with(interior, *post), *post)
         else:
             points, post = _above_post(border, float(stations[division.border + 1].points[0, 1]))
-            interior = knots_with(interior, post[1], post[1])
+            interior = _with_corners(knots_with(interior, post[1], post[1]), 0.0, post[1])
         sections[0] = Section(border.x, points)
         aft_end = HullEnd(border.x, None)
     knots = knots_at(interior)
@@ -162,6 +174,8 @@ def _main(division: _Division) -> tuple[PatchPlan, float, tuple[float, float]]:
         open_ends.append("last")
     if division.border is not None:
         held.append(Held("y", 0.0, FIRST, columns_on(knots, *post)))
+        if division.ends_at_post:
+            open_ends.append("first")
     elif aft_end.bottom is not None:
         held += _sharp(FIRST, aft_end.bottom, draft)
     else:
@@ -173,6 +187,12 @@ def _main(division: _Division) -> tuple[PatchPlan, float, tuple[float, float]]:
         heights=limits, settings=division.settings, open_ends=tuple(open_ends),
     )  # fmt: skip
     return plan, bulb_part, post
+
+
+def _with_corners(interior: list[float], low: float, high: float) -> list[float]:
+    """Interior knots with one more just outside a post's ends, where the section turns sharply off the centreplane."""
+    beside = [value for value in (low - CORNER, high + CORNER) if CORNER < value < 1.0 - CORNER]
+    return sorted([*interior, *beside])
 
 
 def _sharp(rows: slice, bottom: float, top: float) -> list[Held]:
@@ -232,8 +252,8 @@ def _bulb(division: _Division, part: float) -> PatchPlan:
 
 def _counter(division: _Division, border: int, start: float) -> PatchPlan:
     """The patch above an aperture or aft of a post, on to the aft end of the waterline."""
-    table, draft, stations = division.table, division.draft, division.stations
-    end = hull_end(table, stations[division.aft : border + 2], False, draft)
+    draft, stations = division.draft, division.stations
+    end = division.counter_end
     above = stations[division.aft : border] or stations[border : border + 1]
     held = [LOWER_EDGE_ON_CENTREPLANE, upper_edge_at(draft)]
     if end.bottom is not None:

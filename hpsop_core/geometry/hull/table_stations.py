@@ -7,6 +7,7 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
+from itertools import pairwise
 
 import numpy as np
 from scipy.interpolate import PchipInterpolator
@@ -109,8 +110,17 @@ def _at_draft(z: Array, y: Array, draft: float) -> float:
     return max(0.0, width * (draft - closes) / (height - closes))
 
 
-def table_station(x: float, z: Array, y: Array, draft: float) -> TableStation | None:
-    """The section of one station, or None where the hull is not below the waterline there."""
+def table_station(x: float, z: Array, y: Array, draft: float, forward: bool = False) -> TableStation | None:
+    """The section of one station, or None where the hull is not below the waterline there.
+
+    Args:
+        x: m.
+        z, y: its readings.
+        draft: m.
+        forward: in the fore body two pieces are a bulb and the stem above it: one section with a piece of the
+            centreplane between them. In the after body the lower one is a skeg or boss; one that a single reading tells
+            is smaller than the table resolves and is left out.
+    """
     below = z < draft * (1.0 - 1e-9)
     above = z > draft * (1.0 + 1e-9)
     at_draft = _at_draft(z, y, draft)
@@ -126,7 +136,11 @@ def table_station(x: float, z: Array, y: Array, draft: float) -> TableStation | 
     if points[0, 1] > draft * (1.0 - 1e-6):
         return None
     skeg = None
-    if len(runs) == 2 and last == top and len(runs[0]) > 1:
+    if forward and len(runs) > 1:
+        points = _joined([_run(heights, widths, int(run[0]), int(run[-1]), top) for run in runs])
+    elif len(runs) == 2 and last == top and len(runs[0]) == 1:
+        pass
+    elif len(runs) == 2 and last == top:
         lower = _run(heights, widths, int(runs[0][0]), int(runs[0][-1]), top)
         skeg = tidy_section(x, lower, 1e-6 * draft).points
     elif len(runs) > 1:
@@ -134,8 +148,25 @@ def table_station(x: float, z: Array, y: Array, draft: float) -> TableStation | 
     return TableStation(x, tidy_section(x, points, 1e-6 * draft).points, last == top, skeg)
 
 
+def _joined(pieces: Sequence[Array]) -> Array:
+    """Pieces of one station from below as one section, with straight stretches of the centreplane between them."""
+    points = [pieces[0]]
+    for lower, upper in pairwise(pieces):
+        low, high = float(lower[-1, 1]), float(upper[0, 1])
+        points += [np.column_stack([np.zeros(3), np.linspace(low, high, 5)[1:-1]]), upper]
+    return np.vstack(points)
+
+
 def stations_in_water(table: HalfBreadths, draft: float) -> list[TableStation]:
-    found = [table_station(float(x), table.z, row, draft) for x, row in zip(table.x, table.y, strict=True)]
+    """The stations with a section below the waterline, from aft.
+
+    Raises:
+        InputError: too few of them, or a gap between them.
+    """
+    middle = 0.5 * float(table.x[0] + table.x[-1])
+    found = [
+        table_station(float(x), table.z, row, draft, bool(x > middle)) for x, row in zip(table.x, table.y, strict=True)
+    ]
     present = [k for k, station in enumerate(found) if station is not None]
     stations = [station for station in found if station is not None]
     if len(stations) < 5:

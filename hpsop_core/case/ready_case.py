@@ -1,0 +1,110 @@
+"""A case made for a hull that was read: its own dimensions, speeds that suit its fullness, bounds round both."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+
+from hpsop_core.case.case import Case
+from hpsop_core.case.sections import (
+    ConditionsSection,
+    ConstraintsSection,
+    HullSection,
+    InitialSection,
+    PropellerSection,
+)
+from hpsop_core.case.variables import DesignSpace
+from hpsop_core.geometry.hull.hull import ParentHull
+from hpsop_core.geometry.hull.input import HullFile, ReadOptions
+
+# The greatest propeller: this part of the draft, and its tip this part of the draft above the baseline.
+DIAMETER_TO_DRAFT, BASELINE_CLEARANCE = 0.62, 0.03
+# The second, slower condition, as a part of the service speed.
+SLOW = 0.9
+# What the solvers are made for.
+FROUDE_LIMITS = (0.12, 0.34)
+
+
+def usual_froude_number(block_coefficient: float) -> float:
+    """The service Froude number that suits a block coefficient, CB = 1.08 - 1.68 Fn (Alexander's formula)."""
+    return float(np.clip((1.08 - block_coefficient) / 1.68, *FROUDE_LIMITS))
+
+
+def _diameter(parent: ParentHull) -> float:
+    """A propeller that fits: below the counter, above the baseline, within the usual share of the draft."""
+    clear = 2.0 * (parent.shaft_height - BASELINE_CLEARANCE * parent.draft)
+    share = DIAMETER_TO_DRAFT * parent.draft
+    return max(min(share, clear), 0.3 * parent.draft)
+
+
+def ready_case(
+    file: HullFile, path: str, options: ReadOptions, propeller: str = "", blade_count: int | None = None
+) -> Case:
+    """A case for a hull of one's own.
+
+    Args:
+        file: as it was read.
+        path: of the file, as the case is to name it (relative to the case's folder, or absolute).
+        options: with which it was read; what was assumed is stated in the case.
+        propeller: file of a radial table; "" takes the shipped one.
+        blade_count: of that table.
+    """
+    parent, told = file.parent, file.understood
+    axes = options.axes
+    hull = HullSection(
+        file=path,
+        length=round(parent.length, 6),
+        draft=round(parent.draft, 6),
+        breadth=options.breadth,
+        unit=_unit(options, told.unit),
+        bow=axes.bow,
+        origin=axes.origin,
+        waterline=axes.waterline,
+        up=axes.up,
+    )
+    diameter = float(f"{_diameter(parent):.3g}")
+    initial = InitialSection(
+        length=hull.length or parent.length,
+        breadth=round(parent.breadth, 6),
+        draft=hull.draft or parent.draft,
+        diameter=diameter,
+        blade_count=blade_count or 4,
+        pitch_ratio=1.0,
+        displacement_ratio=1.0,
+        expanded_area_ratio=0.65,
+        buoyancy_centre_shift=0.0,
+    )
+    froude = usual_froude_number(told.block_coefficient)
+    space = DesignSpace.around(initial.variables).as_dict()
+    # Whatever is asked of the propeller, its area must be able to grow.
+    space["expanded_area_ratio"] = (0.45, 1.0)
+    ratio = diameter / parent.draft
+    limits = ConstraintsSection(
+        diameter_to_draft_lower=min(ConstraintsSection.diameter_to_draft_lower, round(0.88 * ratio, 3)),
+        diameter_to_draft_upper=max(ConstraintsSection.diameter_to_draft_upper, round(1.12 * ratio, 3)),
+    )
+    name = Path(path).stem.replace(" ", "-") or "own-hull"
+    return Case(
+        name=name,
+        title=f"{Path(path).name}, L {parent.length:.4g} m, B {parent.breadth:.4g} m, T {parent.draft:.4g} m",
+        description=(
+            f"Made by 'hpsop hull' for {Path(path).name}. Check the speeds (Froude numbers that suit CB "
+            f"{told.block_coefficient:.3f}), the propeller and the bounds."
+        ),
+        hull=hull,
+        propeller=PropellerSection(geometry=propeller, geometry_blade_count=blade_count or 3)
+        if propeller
+        else PropellerSection(),
+        initial=initial,
+        bounds=DesignSpace.from_bounds(space),
+        conditions=ConditionsSection(froude_numbers=(round(SLOW * froude, 3), round(froude, 3)), weights=(0.65, 0.35)),
+        constraints=limits,
+    )
+
+
+def _unit(options: ReadOptions, understood: str) -> str:
+    """The stated unit, or the one that a mesh was taken for; a table's own headers keep speaking for themselves."""
+    if options.unit is not None:
+        return options.unit
+    return understood if understood in ("m", "mm", "cm", "ft", "in") else "auto"
