@@ -38,7 +38,7 @@ benchmark: $(VENV)/installed-for-tests
 
 # Every picture of the docs, anew.
 pictures: $(VENV)/installed-for-tests chromium
-	for what in hull propeller rankine blade_panels; do \
+	for what in hull own_files propeller rankine blade_panels; do \
 		$(BIN)/python -m tools.pictures.$${what} --to docs/pictures || exit 1; done
 	$(BIN)/python -m tools.pictures.page --docs --to docs/pictures
 

@@ -1,0 +1,58 @@
+"""Public ships from tables as they are published: volumes, centres and forms beside what their authors give."""
+
+from __future__ import annotations
+
+from pathlib import Path
+
+import numpy as np
+import pytest
+
+from hpsop_core.geometry.hull.input import ReadOptions, read_hull
+from tools.hull_campaign import LARGEST_ERROR, Variant, variants
+
+DATA = Path(__file__).parents[1] / "data" / "hulls"
+# A few of each kind; `python -m tools.hull_campaign` reads them all.
+QUICK = (
+    "Series 60, draft 5.2019", "Series 60, every second station", "Series 60, from FP in mm", "KVLCC2, draft 22.88",
+    "KVLCC2, the others", "DTC, boss told once", "DTC, every second station and waterline", "blunt Wigley, draft 6.25",
+)  # fmt: skip
+
+
+def test_series_60_as_todd_published_it() -> None:
+    """The table as it stands in DTMB report 1712: fractions, station numbers from FP; Todd's own form coefficients."""
+    told = read_hull(DATA / "s60_cb060.csv", ReadOptions(length=121.92)).understood
+    assert (told.breadth, told.draft) == pytest.approx((16.256, 6.5024))
+    # CB 0.600 counts the counter aft of AP, 0.0168 L of waterline, which the table does not tell.
+    assert told.block_coefficient == pytest.approx(0.600, abs=0.003)
+    assert told.midship_coefficient == pytest.approx(0.977, abs=0.004)
+    assert told.prismatic_coefficient == pytest.approx(0.614, abs=0.002)
+    assert told.waterplane_coefficient == pytest.approx(0.706, abs=0.004)
+    assert told.buoyancy_centre_percent == pytest.approx(-1.5, abs=0.05)
+    assert "bow at -x, x = 0 at FP" in told.axes and told.looks == "+x"
+
+
+def test_kvlcc2() -> None:
+    """SIMMAN 2008: 312,622 m3, LCB 3.48 % of L forward of midship, CM 0.998; the boss stands at 5.8 m."""
+    told = read_hull(DATA / "kvlcc2.csv", ReadOptions(length=320.0, draft=20.8)).understood
+    assert told.displaced_volume == pytest.approx(312622.0, rel=1e-3)
+    assert told.buoyancy_centre_percent == pytest.approx(3.48, abs=0.05)
+    assert told.midship_coefficient == pytest.approx(0.998, abs=0.002)
+    # Waterlines 1 m apart.
+    assert told.shaft_height == pytest.approx(5.8, abs=0.5)
+    assert "shaft height found from the boss" in told.assumed
+
+
+@pytest.fixture(scope="module")
+def campaign() -> dict[str, Variant]:
+    return {variant.name: variant for variant in variants()}
+
+
+def test_the_campaign_is_large_enough(campaign: dict[str, Variant]) -> None:
+    assert len(campaign) >= 28
+    assert set(QUICK) <= set(campaign)
+
+
+@pytest.mark.parametrize("name", QUICK)
+def test_a_variant_comes_in(tmp_path: Path, campaign: dict[str, Variant], name: str) -> None:
+    told = campaign[name].read(tmp_path).understood
+    assert np.isclose(told.displaced_volume, campaign[name].volume, rtol=LARGEST_ERROR)
