@@ -1,9 +1,9 @@
 """Public ships as tables of every kind, read and measured: which come in, and how far their volumes are off.
 
 ``python -m tools.hull_campaign`` prints a line a variant. Series 60 is Todd's own table (DTMB report 1712), KVLCC2 was
-read from a public mesh of the SIMMAN 2008 geometry, the blunt Wigley hull is Journée's formula (Delft, 1992), the DTC is
-the shipped hull read at stations and waterlines as tables have them. Volumes are compared with the published one where
-the draft is the published one, else with a smooth integral of the full table.
+read from a public mesh of the SIMMAN 2008 geometry, the blunt Wigley hull is a formula (Journée, Delft, 1992), the DTC is
+the shipped hull read at stations and waterlines as tables have them. Volumes are compared with the published one at the
+published draft, else with a smooth integral of the full table.
 """
 
 from __future__ import annotations
@@ -135,22 +135,26 @@ def variants() -> Iterator[Variant]:
         options = ReadOptions(length=ship.length, draft=ship.draft)
         for words, (stations, levels) in thin.items():
             if ship.name == "Series 60" and words != "every second station":
-                continue  # five waterlines below the draft are all that Todd gives; every other station has no ends
+                continue  # Todd gives six waterlines up to the draft, and the other stations have no ends
             yield Variant(f"{ship.name}, {words}", ship.table(stations, levels), options, ship.volume(ship.draft))
-    yield Variant("KVLCC2, every second station and waterline", kvlcc2().table(slice(None, None, 2), slice(None, None, 2)),
-                  ReadOptions(length=320.0, draft=20.8), 312622.0)  # fmt: skip
-    yield Variant("DTC, every second station and waterline",
-                  duisburg_test_case().table(slice(None, None, 2), slice(None, None, 2)),
-                  ReadOptions(length=355.0, draft=14.5), duisburg_test_case().volume(14.5))  # fmt: skip
-    sixty = series_60()
-    yield Variant("Series 60, as published", (DATA / "s60_cb060.csv").read_text(encoding="utf-8"),
-                  ReadOptions(length=121.92), sixty.volume(sixty.draft))  # fmt: skip
-    yield Variant("KVLCC2, as a matrix", (DATA / "kvlcc2.csv").read_text(encoding="utf-8"),
-                  ReadOptions(length=320.0, draft=20.8), 312622.0)  # fmt: skip
-    yield Variant("DTC, boss told once", (DATA / "dtc_boss_tip.csv").read_text(encoding="utf-8"),
-                  ReadOptions(length=355.0, draft=14.5), 173392.0)  # fmt: skip
-    yield Variant("Series 60, from FP in mm", _from_fp_in_mm(sixty),
-                  ReadOptions(length=121.92, draft=sixty.draft, axes=Axes(origin="fp")), sixty.volume(sixty.draft))  # fmt: skip
+    tanker, container, sixty = kvlcc2(), duisburg_test_case(), series_60()
+    both = slice(None, None, 2)
+    for ship in (tanker, container):
+        options = ReadOptions(length=ship.length, draft=ship.draft)
+        name = f"{ship.name}, every second station and waterline"
+        yield Variant(name, ship.table(both, both), options, ship.volume(ship.draft))
+    from_fp = ReadOptions(length=sixty.length, draft=sixty.draft, axes=Axes(origin="fp"))
+    for name, text, options, ship in (
+        ("Series 60, as published", _file("s60_cb060.csv"), ReadOptions(length=121.92), sixty),
+        ("KVLCC2, as a matrix", _file("kvlcc2.csv"), ReadOptions(length=320.0, draft=20.8), tanker),
+        ("DTC, boss told once", _file("dtc_boss_tip.csv"), ReadOptions(length=355.0, draft=14.5), container),
+        ("Series 60, from FP in mm", _from_fp_in_mm(sixty), from_fp, sixty),
+    ):
+        yield Variant(name, text, options, ship.volume(ship.draft))
+
+
+def _file(name: str) -> str:
+    return (DATA / name).read_text(encoding="utf-8")
 
 
 def _from_fp_in_mm(ship: Ship) -> str:
