@@ -1,17 +1,18 @@
 """Public ships as tables of every kind, read and measured: which come in, and how far their volumes are off.
 
 ``python -m tools.hull_campaign`` prints a line a variant. Series 60 is Todd's own table (DTMB report 1712), KVLCC2 was
-read from a public mesh of the SIMMAN 2008 geometry, the blunt Wigley hull is a formula (Journée, Delft, 1992), the DTC is
-the shipped hull read at stations and waterlines as tables have them. Volumes are compared with the published one at the
-published draft, else with a smooth integral of the full table.
+read from a public mesh of the SIMMAN 2008 geometry, the blunt Wigley hull is a formula (Journée, Delft, 1992), the DTC
+is the shipped hull read at stations and waterlines as tables have them. Volumes are compared with the published one at
+the published draft, else with a smooth integral of the full table.
 """
 
 from __future__ import annotations
 
+import argparse
 import sys
 import tempfile
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
@@ -165,11 +166,14 @@ def _from_fp_in_mm(ship: Ship) -> str:
     return "\n".join(lines) + "\n"
 
 
-def main() -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print a line a variant; 0 where all but two are in and within the error."""
+    parser = argparse.ArgumentParser(description="Read public ships as tables of every kind and measure them.")
+    parser.add_argument("--only", metavar="WORDS", default="", help="variants whose name holds these words")
+    chosen = parser.parse_args(arguments).only
     good = count = 0
     with tempfile.TemporaryDirectory() as folder:
-        for variant in variants():
+        for variant in (one for one in variants() if chosen in one.name):
             count += 1
             start = time.perf_counter()
             try:

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import os
 import re
+import shutil
 import subprocess
 import sys
 from pathlib import Path
@@ -79,8 +80,14 @@ def test_small_optimisation(tmp_path: Path) -> None:
     assert not any("nan" in value for item in drawing.iter() for value in item.attrib.values())
 
 
-def readme_commands() -> list[str]:
-    text = (ROOT / "README.md").read_text(encoding="utf-8")
+def own_files(folder: Path) -> None:
+    """The ship and the propeller that the documents speak of."""
+    shutil.copy(ROOT / "tests" / "data" / "hulls" / "s60_cb060.csv", folder / "ship.csv")
+    shutil.copy(ROOT / "assets" / "propellers" / "p4119.csv", folder / "blade.csv")
+
+
+def commands_of(page: str) -> list[str]:
+    text = (ROOT / page).read_text(encoding="utf-8")
     lines = [line.split("#")[0].strip() for line in text.splitlines()]
     return [line for line in lines if line.startswith("hpsop ")]
 
@@ -88,7 +95,8 @@ def readme_commands() -> list[str]:
 def test_commands_of_the_readme(tmp_path: Path) -> None:
     from hpsop_core.cli.main import build_parser
 
-    commands = readme_commands()
+    own_files(tmp_path)
+    commands = commands_of("README.md")
     assert len(commands) >= 8
     for command in commands:
         words = command.split()[1:]
@@ -96,6 +104,24 @@ def test_commands_of_the_readme(tmp_path: Path) -> None:
         if not command.startswith(LONG):
             assert run(["-m", "hpsop_core.cli", *words, *QUICKER.get(words[0], [])], tmp_path)
     assert (tmp_path / "report.html").stat().st_size > 10_000
+
+
+def test_commands_of_the_guide_to_own_ships(tmp_path: Path) -> None:
+    own_files(tmp_path)
+    commands = commands_of("docs/bring-your-ship.md")
+    assert len(commands) >= 4
+    for command in commands:
+        words = command.split()[1:]
+        assert run(["-m", "hpsop_core.cli", *words, *QUICKER.get(words[0], [])], tmp_path)
+    assert (tmp_path / "ship.png").read_bytes().startswith(b"\x89PNG") and (tmp_path / "ship.toml").is_file()
+
+
+def test_python_of_the_guide_to_own_ships(tmp_path: Path) -> None:
+    own_files(tmp_path)
+    text = (ROOT / "docs" / "bring-your-ship.md").read_text(encoding="utf-8")
+    (block,) = re.findall(r"^```python\n(.*?)^```", text, re.MULTILINE | re.DOTALL)
+    (tmp_path / "block.py").write_text(block, encoding="utf-8")
+    assert "ResistancePoint" in run(["block.py"], tmp_path)
 
 
 def test_python_of_the_readme(tmp_path: Path) -> None:
