@@ -15,6 +15,7 @@ load_hull          a hull from a table of offsets or a closed mesh
 load_propeller     a propeller from a radial table
 export             a design of a run as CAD, meshes and tables
 report             a run as one HTML file
+to_geomdl          hull or propeller as geomdl's NURBS surfaces
 =================  =====================================================================================
 
 >>> from hpsop_core import evaluate, load_case
@@ -46,6 +47,7 @@ if TYPE_CHECKING:
     from hpsop_core.evaluation.open_water import open_water
     from hpsop_core.evaluation.resistance import hydrostatics, resistance
     from hpsop_core.export.design_files import export_design as export
+    from hpsop_core.export.exchange import to_geomdl
     from hpsop_core.geometry.from_files import load_hull, load_propeller
     from hpsop_core.report.report import write_report as report
     from hpsop_core.runs import open_run, optimize
@@ -64,6 +66,7 @@ __all__ = [
     "pressures",
     "report",
     "resistance",
+    "to_geomdl",
     "waves",
 ]
 
@@ -77,6 +80,7 @@ _HOMES = {
     "open_water": "hpsop_core.evaluation.open_water",
     "waves": "hpsop_core.evaluation.fields",
     "pressures": "hpsop_core.evaluation.fields",
+    "to_geomdl": "hpsop_core.export.exchange",
     "load_hull": "hpsop_core.geometry.from_files",
     "load_propeller": "hpsop_core.geometry.from_files",
 }

@@ -11,6 +11,7 @@ from typing import Any
 from hpsop_core.case.case import load_case
 from hpsop_core.cli.driving import INTERRUPTED, Progress, driven
 from hpsop_core.errors import InputError
+from hpsop_core.export.formats import FORMATS
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.reader import open_run
 from hpsop_core.runs.records import identifier
@@ -24,7 +25,9 @@ def add_parsers(commands: Any) -> None:
     export.add_argument("run", metavar="RUN.hpsop")
     export.add_argument("--design", metavar="ID|initial|compromise", required=True, help="which (also: knee)")
     export.add_argument("--to", metavar="FOLDER", required=True, help="where; made if it is not there")
-    export.add_argument("--formats", metavar="stl,glb,3dm,dxf,csv,json", help="all of these by default")
+    export.add_argument(
+        "--formats", metavar="stl,glb,3dm,...", help=f"any of {','.join(FORMATS)}; all but step and iges by default"
+    )
     export.add_argument("--force", action="store_true", help="replace files in a folder that is not empty")
     export.set_defaults(handler=_export)
 

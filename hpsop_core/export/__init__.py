@@ -1,7 +1,7 @@
 """CAD, meshes and tables of a design; called, it is ``export`` of the Python interface.
 
-* design_files: a design's files into a folder or an archive, all of them or none
-* surfaces, rhino: NURBS, and Rhino's file of them
+* design_files: a design's files into a folder or an archive, all of them or none; formats: which there are
+* surfaces: NURBS; exchange: handed to geomdl, openNURBS and OpenCASCADE; rhino: 3DM; solids: STEP and IGES
 * meshes: STL and GLB; lines: DXF
 * tables, offsets: CSV
 
@@ -11,7 +11,7 @@ Args:
     run: the run that has it (``open_run``).
     design: its id, "initial", "compromise" or "knee".
     folder: made if it is not there.
-    formats: any of ``design_files.FORMATS``; all of them by default.
+    formats: any of ``formats.FORMATS``; all but step and iges by default.
     force: write into a folder that holds something already; files of the same name are replaced, others stay.
 
 Returns:

@@ -17,12 +17,11 @@ from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.export import tables
+from hpsop_core.export.formats import USUAL_FORMATS, checked_formats
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.runs.reader import RunReader
 from hpsop_core.version import __version__
-
-FORMATS = ("stl", "glb", "3dm", "dxf", "csv", "json")
 
 _ABOUT = """\
 {title}
@@ -42,6 +41,8 @@ _MEANING = {
     "propeller.stl": "blades, fillets, hub and cap, one closed solid, in its place",
     "design.glb": "hull and propeller for viewers",
     "design.3dm": "rational NURBS surfaces of hull (both sides), deck, flat ends, blades and hub, on layers",
+    "design.step": "the hull as a closed solid, faces named; millimetres",
+    "design.iges": "the same as IGES, a manifold solid (entity 186); millimetres",
     "lines.dxf": "stations, waterlines, buttocks, profile (port side) and blade sections as 3D polylines",
     "offsets.csv": "half-breadths; 'hpsop resistance --offsets offsets.csv' reads it again",
     "propeller.csv": "radial table; 'hpsop open-water --geometry propeller.csv' reads it again",
@@ -72,7 +73,7 @@ def export_design(
         run: the run that has it.
         design: its id, "initial", "compromise" or "knee".
         folder: made if it is not there.
-        formats: any of ``FORMATS``; all of them by default.
+        formats: any of ``formats.FORMATS``; ``formats.USUAL_FORMATS`` by default.
         force: write into a folder that holds something already; files of the same name are replaced, others stay.
 
     Returns:
@@ -82,7 +83,7 @@ def export_design(
         InputError: no such design or format, a failed design, or a folder that cannot be used.
         SolverFailure: the form or its resistance curve cannot be computed.
     """
-    wanted = checked_formats(FORMATS if formats is None else formats)
+    wanted = checked_formats(USUAL_FORMATS if formats is None else formats)
     record = run.design(design)
     if not record.evaluation.ok:
         raise InputError(
@@ -98,7 +99,7 @@ def export_design(
 
 
 def zip_design(
-    case: Case, evaluation: Evaluation, label: str, reference: Reference, formats: Sequence[str] = FORMATS
+    case: Case, evaluation: Evaluation, label: str, reference: Reference, formats: Sequence[str] = USUAL_FORMATS
 ) -> bytes:
     """The files of ``export_design`` as one ZIP archive, for a download.
 
@@ -107,7 +108,7 @@ def zip_design(
         evaluation: the design, one that did not fail; it need not stand in a run.
         label: its name in the files, for example "design 12".
         reference: of the case at the evaluation's level.
-        formats: any of ``FORMATS``.
+        formats: any of ``formats.FORMATS``.
 
     Raises:
         InputError: an unknown format, or no room for the files.
@@ -140,20 +141,6 @@ def _written(data: _Design, target: Path, formats: Sequence[str]) -> tuple[Path,
     return tuple(target / file.name for file in made)
 
 
-def checked_formats(formats: Sequence[str]) -> tuple[str, ...]:
-    """The formats in their usual order, each once.
-
-    Raises:
-        InputError: one that is not known, or none.
-    """
-    for name in formats:
-        if name not in FORMATS:
-            raise InputError(f"--formats: '{name}' is not a format; give any of {','.join(FORMATS)}")
-    if not formats:
-        raise InputError(f"--formats: name at least one of {','.join(FORMATS)}")
-    return tuple(name for name in FORMATS if name in formats)
-
-
 def _check_target(target: Path, force: bool) -> None:
     if target.exists() and not target.is_dir():
         raise InputError(f"{target}: is a file; --to needs a folder")
@@ -175,12 +162,8 @@ def _write(design: _Design, folder: Path, formats: Sequence[str]) -> list[Path]:
         from hpsop_core.export.meshes import write_glb
 
         write_glb(folder / "design.glb", design.hull, design.propeller)
-    if "3dm" in formats:
-        from hpsop_core.export.rhino import write_3dm
-        from hpsop_core.export.surfaces import design_surfaces
-
-        surfaces, deviation = design_surfaces(design.hull, design.propeller)
-        write_3dm(folder / "design.3dm", surfaces, _title(design))
+    if {"3dm", "step", "iges"} & set(formats):
+        deviation = _write_surfaces(design, folder, formats)
     if "dxf" in formats:
         from hpsop_core.export.lines import write_dxf
 
@@ -209,6 +192,28 @@ def _write(design: _Design, folder: Path, formats: Sequence[str]) -> list[Path]:
     readme = folder / "README.txt"
     readme.write_text(about, encoding="utf-8")
     return [*made, readme]
+
+
+def _write_surfaces(design: _Design, folder: Path, formats: Sequence[str]) -> float:
+    """The formats made of NURBS surfaces; the hull's largest deviation in m."""
+    from hpsop_core.export.surfaces import design_surfaces, hull_surfaces
+
+    title = _title(design)
+    if "3dm" in formats:
+        from hpsop_core.export.rhino import write_3dm
+
+        surfaces, _ = design_surfaces(design.hull, design.propeller)
+        write_3dm(folder / "design.3dm", surfaces, title)
+    hull_parts, deviation = hull_surfaces(design.hull)
+    if {"step", "iges"} & set(formats):
+        from hpsop_core.export.solids import sewn_solid, write_iges, write_step
+
+        solids = (sewn_solid("hull", hull_parts),)
+        if "step" in formats:
+            write_step(folder / "design.step", solids, title)
+        if "iges" in formats:
+            write_iges(folder / "design.iges", solids, title)
+    return deviation
 
 
 def _title(design: _Design) -> str:

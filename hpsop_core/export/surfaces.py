@@ -13,6 +13,13 @@ from hpsop_core.geometry.propeller.nurbs import propeller_surfaces
 from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.typing_aliases import Array
 
+# Of each group, red, green, blue, opacity, 0 to 255.
+COLOURS = {
+    "hull underwater": (150, 60, 50, 255),
+    "hull topsides": (70, 95, 120, 255),
+    "hull flat ends": (120, 120, 120, 255),
+    "propeller": (190, 150, 60, 255),
+}
 _MIRROR = np.array([1.0, -1.0, 1.0])
 
 

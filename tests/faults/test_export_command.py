@@ -39,7 +39,10 @@ def test_the_command_lists_what_it_wrote(run: RunReader, tmp_path: Path, capsys:
     [
         (["--design", "7000"], "has no design 7000"),
         (["--design", "best"], "--design best: give a design's number, initial, compromise or knee"),
-        (["--design", "initial", "--formats", "igs"], "'igs' is not a format; give any of stl,glb,3dm,dxf,csv,json"),
+        (
+            ["--design", "initial", "--formats", "igs"],
+            "'igs' is not a format; give any of stl,glb,3dm,step,iges,dxf,csv,json",
+        ),
         (["--design", "initial", "--formats", ","], "name at least one of"),
     ],
 )
