@@ -98,7 +98,7 @@ class ConditionResult:
         propulsive_efficiency: effective over delivered power.
         brake_power: of the engine, with sea margin and shaft losses, in W.
 
-    The last nine are missing (None) in the file of a version that did not know them.
+    Numbers that an earlier version neither kept nor implied are None in its files.
     """
 
     froude_number: float

@@ -140,7 +140,7 @@ def _print_conditions(conditions: Sequence[ConditionResult]) -> None:
         ["Fn", "V m/s", "V kn", *(f"{symbol} kN" for symbol, _ in parts)],
         [
             [f"{c.froude_number:.4f}", f"{c.speed:.3f}", f"{c.speed / KNOT:.2f}"]
-            + [f"{getattr(c, name) / 1e3:.1f}" for _, name in parts]
+            + [f"{(getattr(c, name) or 0.0) / 1e3:.1f}" for _, name in parts]
             for c in conditions
         ],
     )
@@ -149,14 +149,18 @@ def _print_conditions(conditions: Sequence[ConditionResult]) -> None:
         [
             f"{c.froude_number:.4f}", f"{c.wake_fraction:.4f}", f"{c.thrust_deduction:.4f}",
             f"{c.advance_coefficient:.4f}", f"{c.rotation_rate_rpm:.2f}", f"{c.thrust_coefficient:.4f}",
-            f"{10 * c.torque_coefficient:.4f}", f"{c.open_water_efficiency:.4f}", f"{c.hull_efficiency:.4f}",
-            f"{c.relative_rotative_efficiency:.4f}", f"{c.propulsive_efficiency:.4f}",
+            f"{10 * c.torque_coefficient:.4f}", f"{c.open_water_efficiency:.4f}", _digits(c.hull_efficiency),
+            _digits(c.relative_rotative_efficiency), _digits(c.propulsive_efficiency),
             *(f"{(power or 0.0) / 1e6:.2f}" for power in (c.effective_power, c.delivered_power, c.brake_power)),
             f"{c.required_expanded_area_ratio:.3f}",
         ]
         for c in conditions
     ]  # fmt: skip
     print_table([*header, "EAR"], rows)
+
+
+def _digits(value: float | None) -> str:
+    return "-" if value is None else f"{value:.4f}"
 
 
 def _water(word: str | None) -> tuple[float | None, float | None]:

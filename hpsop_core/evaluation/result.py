@@ -156,7 +156,7 @@ def evaluation_from_dict(data: Mapping[str, Any]) -> Evaluation:
         variables=variables,
         hull=HullResult(**_known(HullResult, data["hull"])),
         propeller=PropellerResult(**_known(PropellerResult, data["propeller"])),
-        conditions=tuple(ConditionResult(**_known(ConditionResult, item)) for item in data["conditions"]),
+        conditions=tuple(ConditionResult(**_known(ConditionResult, _lifted(item))) for item in data["conditions"]),
         objectives=data["objectives"],
         all_objectives=data.get("all_objectives", {}),
         constraints=data["constraints"],
@@ -165,6 +165,25 @@ def evaluation_from_dict(data: Mapping[str, Any]) -> Evaluation:
         open_water=OpenWaterCurve(**curves),
         elapsed=data.get("elapsed", 0.0),
     )
+
+
+def _lifted(condition: Mapping[str, Any]) -> Mapping[str, Any]:
+    """A condition with what earlier versions did not write down: they knew no allowances, margins or losses."""
+    if "form_resistance" in condition:
+        return condition
+    total = condition["total_resistance"]
+    effective = total * condition["speed"]
+    return {
+        "form_resistance": total - condition["friction_resistance"] - condition["wave_resistance"],
+        "correlation_resistance": 0.0,
+        "air_resistance": 0.0,
+        "appendage_resistance": 0.0,
+        "effective_power": effective,
+        "hull_efficiency": (1.0 - condition["thrust_deduction"]) / (1.0 - condition["wake_fraction"]),
+        "propulsive_efficiency": effective / condition["delivered_power"],
+        "brake_power": condition["delivered_power"],
+        **condition,
+    }
 
 
 def _known(kind: type[Any], data: Mapping[str, Any]) -> dict[str, Any]:

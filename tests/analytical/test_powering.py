@@ -14,7 +14,7 @@ from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.reference import Reference, reference_for
-from hpsop_core.evaluation.result import Ok
+from hpsop_core.evaluation.result import Ok, evaluation_from_dict
 from hpsop_core.quantities import condition_names, condition_quantities
 
 PAPER = load_case("dtc-p4119-paper")
@@ -238,3 +238,18 @@ def test_conditions_that_are_refused(changes: dict[str, object], words: str) -> 
 def test_constants_that_are_refused(changes: dict[str, object], words: str) -> None:
     with pytest.raises(InputError, match=words):
         CASE.replaced("constants", **changes)
+
+
+# ---- files of an earlier version -------------------------------------------------------------------------------------
+def test_parts_of_an_earlier_versions_file_add_up() -> None:
+    document = computed(CASE).as_dict()
+    kept = ("friction_resistance", "wave_resistance", "total_resistance")
+    for condition in document["conditions"]:
+        for name in {*PARTS, "effective_power", "hull_efficiency", "propulsive_efficiency", "brake_power"} - set(kept):
+            del condition[name]
+    old, new = evaluation_from_dict(document), computed(CASE)
+    for own, other in zip(old.conditions, new.conditions, strict=True):
+        assert total(own) == pytest.approx(own.total_resistance, rel=1e-14)
+        assert own.form_resistance == pytest.approx(other.form_resistance, rel=1e-12)
+        assert own.brake_power == own.delivered_power
+        assert own.propulsive_efficiency == other.propulsive_efficiency
