@@ -6,14 +6,19 @@ international knots; the viscosity is that of sea water at 15 C, which the print
 
 from __future__ import annotations
 
+import csv
 import dataclasses
 import math
 
+import numpy as np
 import pytest
 
+from hpsop_core.assets import read_asset_text
 from hpsop_core.errors import SolverFailure
 from hpsop_core.hydro import holtrop
 from hpsop_core.hydro.friction import ittc57_coefficient
+from hpsop_core.hydro.operating_point import PropellerCurve, match
+from hpsop_core.hydro.powering import ResistanceFactors, powers, resistance_parts
 
 SPEED = 25.0 * 1852.0 / 3600.0
 DENSITY = 1025.0
@@ -111,3 +116,61 @@ def test_the_branches_of_c12_meet(draft: float, c12: float) -> None:
     length = 205.0
     near = 48.20 * max(draft / length - 0.02, 0.0) ** 2.078 + 0.479948
     assert near == pytest.approx(c12, abs=1e-3)
+
+
+def printed_example() -> dict[str, float]:
+    lines = read_asset_text("reference", "holtrop_1982_example.csv").splitlines()
+    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
+    return {row["quantity"]: float(row["value"]) for row in rows}
+
+
+@pytest.mark.parametrize("slope", [-0.35, -0.45, -0.55])
+def test_stated_numbers_give_the_printed_shaft_power(slope: float) -> None:
+    """With allowance, w, t and eta_R stated, resistance, thrust, rate, efficiency and shaft power are the printed ones.
+
+    Of the authors' propeller one point is printed; a straight curve through it stands for the rest, and its slope may
+    not matter, for the ship works there.
+    """
+    ship = printed_example()
+    dynamic = 0.5 * ship["density"] * ship["speed"] ** 2
+    surface = SHIP.total_wetted_surface
+    parts = resistance_parts(
+        ResistanceFactors(
+            form_factor=ship["form_factor"],
+            correlation_allowance=1e3 * ship["correlation_resistance"] / (dynamic * surface),
+            appendage_factor=ship["appendage_resistance"] / ship["friction_resistance"],
+        ),
+        speed=ship["speed"],
+        density=ship["density"],
+        wetted_surface=surface,
+        friction=1e3 * ship["friction_resistance"],
+        wave=1e3 * (ship["wave_resistance"] + ship["bulb_resistance"]),
+    )
+    assert parts.total == pytest.approx(1e3 * ship["total_resistance"], rel=1e-5)
+    wake, deduction = ship["wake_fraction"], ship["thrust_deduction"]
+    advance = (1.0 - wake) * ship["speed"] / (ship["rotation_rate"] * ship["diameter"])
+    nodes = np.array([0.4, 0.7, 1.0])
+    curve = PropellerCurve(
+        nodes,
+        ship["thrust_coefficient"] + slope * (nodes - advance),
+        ship["torque_coefficient"] + 0.12 * slope * (nodes - advance),
+    )
+    point = match(
+        curve, parts.total, wake, deduction, ship["density"], ship["speed"], ship["diameter"],
+        ship["relative_rotative_efficiency"],
+    )  # fmt: skip
+    power = powers(
+        total_resistance=parts.total,
+        speed=ship["speed"],
+        wake=wake,
+        deduction=deduction,
+        delivered_power=point.delivered_power,
+        sea_margin=0.0,
+        shaft_efficiency=ship["shaft_efficiency"],
+    )
+    # w and t are printed in four digits: half of the last one moves thrust, rate and power by less than 2e-4.
+    assert power.effective == pytest.approx(1e3 * ship["effective_power"], rel=2e-4)
+    assert point.thrust == pytest.approx(1e3 * ship["thrust"], rel=2e-4)
+    assert point.rotation_rate == pytest.approx(ship["rotation_rate"], rel=2e-4)
+    assert point.open_water_efficiency == pytest.approx(ship["open_water_efficiency"], rel=2e-4)
+    assert power.brake == pytest.approx(1e3 * ship["shaft_power"], rel=2e-4)
