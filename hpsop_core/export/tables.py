@@ -35,7 +35,8 @@ def offsets_table(hull: Hull) -> str:
     x = np.array(_joined(_STATIONS)) * hull.length
     deck = hull.parent.deck_height * hull.scale[2]
     above = np.linspace(hull.draft, 0.997 * deck, 14)[1:]
-    return offsets_csv(hull, x, np.concatenate([np.array(_joined(_HEIGHTS)) * hull.draft, above]))
+    bottom = hull.parent.lowest * hull.scale[2]
+    return offsets_csv(hull, x, np.concatenate([bottom + np.array(_joined(_HEIGHTS)) * (hull.draft - bottom), above]))
 
 
 def propeller_table(propeller: Propeller) -> str:

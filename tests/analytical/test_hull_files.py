@@ -24,7 +24,8 @@ from hull_files import (
     written,
 )
 
-from hpsop_core.geometry.hull.input import Axes, ReadOptions, ShipTable, read_hull, read_table
+from hpsop_core.geometry.hull.input import Axes, ReadOptions, ShipTable, hull_from_table, read_hull, read_table
+from hpsop_core.hydro import michell
 
 Y = half_breadth(STATIONS, HEIGHTS)
 COMMA: Callable[[float], str] = lambda value: f"{value:.6g}".replace(".", ",")  # noqa: E731
@@ -283,10 +284,20 @@ def test_every_mesh_is_the_same_hull(tmp_path: Path, base: ShipTable, kind: str)
 def test_keel_below_the_baseline(tmp_path: Path, base: ShipTable) -> None:
     """The same body in the water, 0.6 m lower: nothing below z = 0 is lost."""
     path = _saved(tmp_path / "deep.stl", changed(parabolic_mesh(), shift=(0, 0, -0.6)))
-    told = read_hull(path, _mesh_options(draft=5.65)).understood
+    deep = read_hull(path, _mesh_options(draft=5.65))
+    told = deep.understood
     # 2777.8 m3 is the formula's; plane facets on 41 stations lose 0.2 % of it.
     assert told.displaced_volume == pytest.approx(2771.8, rel=1e-3)
     assert told.wetted_surface == pytest.approx(1490.2, rel=1e-3)
+    # Level 1 sees the same body: its table of half-breadths begins at the keel, not at z = 0.
+    waves = [
+        michell.wave_coefficients(table.x, table.z, table.y, 100.0, 1490.2, (0.25, 0.3))
+        for table in (
+            file.parent.transform(100.0, file.parent.breadth, file.table.draft).offset_table()
+            for file in (deep, hull_from_table(base))
+        )
+    ]
+    assert waves[0] == pytest.approx(waves[1], rel=1e-3)
 
 
 def test_a_mesh_that_ends_at_its_waterline(tmp_path: Path) -> None:
@@ -314,3 +325,21 @@ def test_own_mesh_formats_come_back(tmp_path: Path) -> None:
     volume = 2.0 * float(np.trapezoid(np.trapezoid(table.y[:, below], table.z[below], axis=1), table.x))
     # The trapezoidal rule on 121 x 33 readings.
     assert volume == pytest.approx(hull.hydrostatics.displaced_volume, rel=2e-3)
+
+
+def _same_volume(table: ShipTable, volume: float) -> None:
+    below = table.z <= table.draft
+    found = 2.0 * float(np.trapezoid(np.trapezoid(table.y[:, below], table.z[below], axis=1), table.x))
+    # The trapezoidal rule on 121 x 33 readings.
+    assert found == pytest.approx(volume, rel=2e-3)
+
+
+def test_own_rhino_file_comes_back(tmp_path: Path) -> None:
+    from hpsop_core.case.case import load_case
+    from hpsop_core.evaluation.shapes import design_hull, design_propeller
+    from hpsop_core.export.rhino import write_3dm
+
+    case = load_case("dtc-p4119")
+    hull = design_hull(case, case.initial.variables)
+    write_3dm(tmp_path / "ship.3dm", hull, design_propeller(case, case.initial.variables))
+    _same_volume(read_table(tmp_path / "ship.3dm", ReadOptions(length=355.0, draft=14.5)), 173392.0)

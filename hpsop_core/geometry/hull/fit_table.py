@@ -94,6 +94,9 @@ def parent_from_table(
         girth=girths(plans),
         along={plan.name: plan.along for plan in plans if plan.along is not None},
         source=f"fitted to {table.name}",
+        lowest=min(0.0, *(float(np.min(fit.surface.control_points[..., 2])) for fit in fits.values()))
+        if table.z[0] < 0.0
+        else 0.0,
     )
     report = FitReport(
         table.name,

@@ -104,6 +104,7 @@ class ParentHull:
         source: where the shape comes from.
         fit_report: how well the surface meets the points of a user's own hull.
         warnings: what every hull of this family has to say, one line each.
+        lowest: height of the deepest point where that lies below the baseline (a dome, a raked keel), m, <= 0.
     """
 
     name: str
@@ -122,6 +123,7 @@ class ParentHull:
     source: str = ""
     fit_report: FitReport | None = None
     warnings: tuple[str, ...] = ()
+    lowest: float = 0.0
     _points: dict[tuple[str, bytes, bytes], Array] = field(default_factory=dict, repr=False)
 
     def surface(self, name: str) -> NurbsSurface:
@@ -174,7 +176,7 @@ class ParentHull:
         near = 2e-4 * (high - low)
         keep = [k for k in range(len(x)) if x[k] in ends or float(np.min(np.abs(np.array(ends) - x[k]))) > near]
         x = x[keep]
-        z = HEIGHT_FRACTIONS * self.draft
+        z = self.lowest + HEIGHT_FRACTIONS * (self.draft - self.lowest)
         z[-1] = self.draft
         parameters, stations = self._covered(x)
         return x, z, tabulate(list(self.underwater.values()), parameters, stations, x, z)

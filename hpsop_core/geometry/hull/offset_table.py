@@ -35,11 +35,11 @@ def section_half_breadths(section: Array, heights: Array, draft: float) -> Array
 
     Args:
         section: (k, 3) points along the section, v from the bottom to the top.
-        heights: (nz,) in m.
+        heights: (nz,) in m, rising; the first one, if it is not above the baseline, stands for the flat of bottom.
         draft: m, sets the height at which the row z = 0 is read.
     """
     height = np.maximum.accumulate(section[:, 2])
-    reading = np.maximum(heights, BOTTOM_READING * draft)
+    reading = np.maximum(heights, min(float(heights[0]), 0.0) + BOTTOM_READING * draft)
     inside = (reading >= height[0] - 1e-9) & (reading <= height[-1] + 1e-6 * draft)
     # Equal heights (a flat bottom) would make interpolation ambiguous: a rising trace of one picometre a point.
     height = height + 1e-12 * np.arange(len(height))
