@@ -24,6 +24,7 @@ from hull_files import (
     written,
 )
 
+from hpsop_core.geometry.hull.hull import load_parent_hull
 from hpsop_core.geometry.hull.input import Axes, ReadOptions, ShipTable, hull_from_table, read_hull, read_table
 from hpsop_core.hydro import michell
 
@@ -334,12 +335,21 @@ def _same_volume(table: ShipTable, volume: float) -> None:
     assert found == pytest.approx(volume, rel=2e-3)
 
 
-def test_own_rhino_file_comes_back(tmp_path: Path) -> None:
-    from hpsop_core.case.case import load_case
-    from hpsop_core.evaluation.shapes import design_hull, design_propeller
+@pytest.mark.parametrize("suffix", ["3dm", "step", "iges"])
+def test_own_surfaces_come_back(tmp_path: Path, suffix: str) -> None:
+    """What the program exports for CAD it reads again."""
     from hpsop_core.export.rhino import write_3dm
+    from hpsop_core.export.solids import sewn_solid, write_iges, write_step
+    from hpsop_core.export.surfaces import hull_surfaces
 
-    case = load_case("dtc-p4119")
-    hull = design_hull(case, case.initial.variables)
-    write_3dm(tmp_path / "ship.3dm", hull, design_propeller(case, case.initial.variables))
-    _same_volume(read_table(tmp_path / "ship.3dm", ReadOptions(length=355.0, draft=14.5)), 173392.0)
+    parent = load_parent_hull()
+    hull = parent.transform(parent.length, parent.breadth, parent.draft)
+    surfaces, _ = hull_surfaces(hull)
+    path = tmp_path / f"ship.{suffix}"
+    if suffix == "3dm":
+        write_3dm(path, surfaces, "a ship")
+    else:
+        {"step": write_step, "iges": write_iges}[suffix](path, [sewn_solid("hull", surfaces)], "a ship")
+    table = read_table(path, ReadOptions(length=355.0, draft=14.5))
+    _same_volume(table, hull.hydrostatics.displaced_volume)
+    assert table.unit == ("m" if suffix == "3dm" else "mm")
