@@ -39,6 +39,11 @@ class RunControl:
             self._extension += generations
             self._condition.notify_all()
 
+    @property
+    def extension(self) -> int:
+        """Generations asked for and not yet taken."""
+        return self._extension
+
     def take_extension(self) -> int:
         """Generations asked for since the last call."""
         with self._condition:

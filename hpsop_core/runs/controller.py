@@ -12,6 +12,8 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hpsop_core.case.case import Case
+from hpsop_core.case.fields import rules
+from hpsop_core.case.sections import OptimizationSection
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation.result import Evaluation
@@ -19,6 +21,7 @@ from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.events import RunEvent, RunSnapshot
 from hpsop_core.runs.executor import LocalWorkers, checked_executor, make_workers
 from hpsop_core.runs.reader import RunReader, open_run
+from hpsop_core.runs.ship import is_same_ship
 from hpsop_core.runs.store import RunStore
 from hpsop_core.runs.tasks import Physics, hydrodynamics
 
@@ -96,9 +99,10 @@ class RunController:
 
     def _check(self, case: Case | None, changes: Mapping[str, int]) -> None:
         stored = self._store.case
-        if case is not None and case.replaced("optimization", **_settings(stored)) != stored:
+        if case is not None and not is_same_ship(case.replaced("optimization", **_settings(stored)), stored):
             raise InputError(
-                f"{self.path}: holds a run of the case '{stored.name}' as it was when the run was started; "
+                f"{self.path}: holds a run of the case '{stored.name}' as it was when the run was started"
+                f"{', with the files that it named' if self._store.files else ''}; "
                 "give that case again, or choose another file"
             )
         for name in _FIXED_SETTINGS:
@@ -112,7 +116,21 @@ class RunController:
         if asked is not None and asked < total:
             raise InputError(f"{self.path}: was asked for {total} generations; ask for as many or more, not {asked}")
         if asked is not None and asked > total:
+            self._check_total(asked)
             self._store.set_values(generations=str(asked))
+
+    def _check_total(self, total: int) -> None:
+        """A run never asks for more generations than a case may state.
+
+        Raises:
+            InputError: it would.
+        """
+        most = int(rules(OptimizationSection)["generations"].upper)
+        if total > most:
+            raise InputError(
+                f"{self.path}: {total} generations in total are more than {most}, the most that a run may have; "
+                "start a new run from its front (--seeds-from)"
+            )
 
     # -- what a person asks for ------------------------------------------------------------------------------------
 
@@ -168,15 +186,18 @@ class RunController:
         """Ask for so many more generations; start it again if it had ended.
 
         Raises:
-            InputError: not a positive number.
+            InputError: not a positive number, or more in total than a run may have.
             StoreUnwritableError: the run stands still and its file cannot be written.
         """
         if generations < 1:
             raise InputError(f"extend by {generations} generations: give 1 or more")
         with self._guard:
             if self.running:
+                # What was asked a moment ago and is not in the file yet counts too.
+                self._check_total(self._store.generations + self._control.extension + generations)
                 self._control.extend(generations)
             else:
+                self._check_total(self._store.generations + generations)
                 self._store.set_values(generations=str(self._store.generations + generations))
 
     def add_design(self, evaluation: Evaluation) -> int:

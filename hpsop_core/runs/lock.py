@@ -11,13 +11,32 @@ from pathlib import Path
 from typing import Any
 
 from hpsop_core.errors import InputError
+from hpsop_core.runs.connections import real_path
 
 _PATIENCE = 0.5  # seconds: a reader's test of the lock lasts microseconds
 
 
 def lock_path(run_path: Path) -> Path:
-    """The lock file that stands beside a run file while it is written."""
-    return run_path.with_name(run_path.name + ".lock")
+    """The lock file that stands beside a run file while it is written: beside the file itself, not a link to it."""
+    real = real_path(run_path)
+    return real.with_name(real.name + ".lock")
+
+
+def refuse_second_name(run_path: Path) -> None:
+    """A file with two names has two logs and two locks, and two programs would write it at once.
+
+    Raises:
+        InputError: the file has hard links.
+    """
+    try:
+        names = os.stat(run_path).st_nlink
+    except OSError:
+        return
+    if names > 1:
+        raise InputError(
+            f"{run_path}: has {names} names (hard links), and another program may be writing it by another one; "
+            "copy it and use the copy"
+        )
 
 
 class WriterLock:

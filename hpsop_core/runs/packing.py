@@ -16,8 +16,9 @@ from typing import Any
 
 from hpsop_core.runs.records import json_text, named_variables
 
-_RAW_DEFLATE = -15  # without zlib's header and check sum: SQLite's pages are what is trusted here
+_RAW_DEFLATE = -15  # without zlib's header and check sum: the record has its own
 _BREAK = b"\0"
+_LARGEST = 16 * 2**20  # bytes unpacked, a thousand times what an evaluation has: beyond it stands a bomb
 
 
 def pack(document: Mapping[str, Any], dictionary: bytes) -> bytes:
@@ -41,10 +42,20 @@ def unpack(packed: bytes, dictionary: bytes, variables: str) -> dict[str, Any]:
         packed: its bytes.
         dictionary: the run's.
         variables: the design's, as the text in its row.
+
+    Raises:
+        ValueError, LookupError, TypeError, struct.error, zlib.error: bytes that ``pack`` did not make.
     """
     unpacker = zlib.decompressobj(_RAW_DEFLATE, zdict=dictionary)
-    words, _, binary = (unpacker.decompress(packed) + unpacker.flush()).partition(_BREAK)
-    document: dict[str, Any] = _joined(json.loads(words), (number for (number,) in struct.iter_unpack("<d", binary)))
+    content = unpacker.decompress(packed, _LARGEST)
+    if not unpacker.eof or unpacker.unused_data:
+        raise ValueError("packed data that does not end where it should")
+    words, _, binary = content.partition(_BREAK)
+    numbers = [number for (number,) in struct.iter_unpack("<d", binary)]
+    shape = json.loads(words)
+    if not isinstance(shape, dict) or _count(shape) != len(numbers) or not all(map(math.isfinite, numbers)):
+        raise ValueError("packed data whose words and numbers do not belong together")
+    document: dict[str, Any] = _joined(shape, iter(numbers))
     document["variables"] = named_variables(variables)
     curves = document.get("open_water")
     if curves and "open_water_efficiency" not in curves:
@@ -72,6 +83,14 @@ def _split(value: Any, numbers: list[float]) -> Any:
     if isinstance(value, (list, tuple)):
         return [_split(item, numbers) for item in value]
     return value
+
+
+def _count(value: Any) -> int:
+    """How many real numbers stand in a value."""
+    if isinstance(value, float):
+        return 1
+    items = value.values() if isinstance(value, dict) else value if isinstance(value, list) else ()
+    return sum(map(_count, items))
 
 
 def _joined(value: Any, numbers: Iterator[float]) -> Any:

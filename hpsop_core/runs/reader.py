@@ -4,9 +4,9 @@ from __future__ import annotations
 
 import contextlib
 import json
-import sqlite3
+import os
 import time
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -16,8 +16,10 @@ from hpsop_core.errors import InputError
 from hpsop_core.evaluation.result import evaluation_from_dict
 from hpsop_core.optimization.decision import compromise
 from hpsop_core.optimization.generation import Generation
+from hpsop_core.runs.checksums import DamagedRunError, damage_told
+from hpsop_core.runs.connections import connect_reader, log_path, real_path
+from hpsop_core.runs.content import RunContent
 from hpsop_core.runs.lock import is_being_written
-from hpsop_core.runs.packing import unpack
 from hpsop_core.runs.records import (
     ArchivePoint,
     DesignRecord,
@@ -26,7 +28,8 @@ from hpsop_core.runs.records import (
     generation_from_text,
     named_variables,
 )
-from hpsop_core.runs.schema import HAND_IDS_BEGIN, connect_reader, schema_version
+from hpsop_core.runs.schema import COLUMNS, FIRST_SEARCH_ID, HAND_IDS_BEGIN, schema_version
+from hpsop_core.runs.ship import ShipFile, with_files
 
 _BEYOND_ANY_ID = 2**63  # SQLite's integers end here
 
@@ -34,35 +37,76 @@ _BEYOND_ANY_ID = 2**63  # SQLite's integers end here
 class RunReader:
     """A run as its file tells it. Never writes; every call reads what is there at that moment.
 
-    Finished evaluations and generations never change, so each is read from the disk once.
+    Finished evaluations and generations never change, so each is read from the disk once. Every record is held against
+    its checksum before any of it is given away; questions about all of them also against the file's tally.
 
     Args:
         path: the run file.
 
+    Attributes:
+        case: the run's exact case; its own hull and propeller files stand in the run, and it names them where they
+            have been written out on this machine.
+        files: of the own hull and propeller; empty for shipped ones, and in files of earlier versions.
+
     Raises:
-        InputError: no such file, not a run file, or from a newer hpsop.
+        InputError: no such file, not a run file, or from a newer hpsop. Every method raises it too when the file is
+            gone, was replaced or was cut short since.
+        DamagedRunError: what stands in it is not what was written; every method may raise it.
     """
 
     def __init__(self, path: str | Path) -> None:
         self.path = Path(path)
+        self._real = real_path(self.path)
         self._designs: dict[int, DesignRecord] = {}
         self._generations: dict[int, GenerationRecord] = {}
-        with self._reading() as connection:
-            if schema_version(connection, self.path) == 0:
-                raise InputError(f"{self.path}: holds no run; start one with 'hpsop optimize CASE --run {self.path}'")
-            self._values = _values(connection)
-        self.case: Case = case_from_toml(self._values["case"], str(self.path))
+        self._status: os.stat_result | None = None
+        with self._reading() as content:
+            self._values = content.values()
+            self.files: tuple[ShipFile, ...] = content.files()
+            self.case: Case = with_files(case_from_toml(self._values["case"], str(self.path)), self.files)
 
     @contextlib.contextmanager
-    def _reading(self) -> Iterator[sqlite3.Connection]:
+    def _reading(self) -> Iterator[RunContent]:
+        shrunk = self._check_file()
         try:
-            connection = connect_reader(self.path)
-            try:
-                yield connection
-            finally:
-                connection.close()
-        except sqlite3.Error as error:
-            raise InputError(f"{self.path}: cannot be read as a run file ({error}); choose another file") from error
+            with damage_told(self.path):
+                connection = connect_reader(self._real)
+                try:
+                    version = schema_version(connection, self.path)
+                    if version == 0:
+                        raise InputError(f"{self.path}: holds no run; {self._remedy()}")
+                    # One picture for all that is asked together.
+                    connection.execute("BEGIN")
+                    yield RunContent(connection, self.path, version)
+                finally:
+                    connection.close()
+        except InputError as error:
+            if shrunk:
+                raise InputError(shrunk) from error
+            raise
+
+    def _remedy(self) -> str:
+        if self._real.stat().st_size > 0:
+            return f"if it is a copy of a run, copy its {self._real.name}-wal too"
+        return f"start one with 'hpsop optimize CASE --run {self.path}'"
+
+    def _check_file(self) -> str:
+        """Refuses another file than the one that was opened; returns what to say if one that shrank cannot be read."""
+        try:
+            there = os.stat(self._real)
+        except OSError as error:
+            if self._status is None:
+                return ""  # it never was there: said by whoever opens it
+            raise InputError(
+                f"{self.path}: is gone ({error.strerror}): deleted or renamed since it was opened"
+            ) from error
+        was = self._status = self._status or there
+        if (was.st_ino, was.st_dev) != (there.st_ino, there.st_dev):
+            raise InputError(f"{self.path}: another file stands in its place since it was opened; open it again")
+        if there.st_size < was.st_size:
+            return f"{self.path}: was cut short by another program (from {was.st_size} to {there.st_size} bytes)"
+        self._status = there
+        return ""
 
     # -- the run as a whole ----------------------------------------------------------------------------------------
 
@@ -73,38 +117,45 @@ class RunReader:
 
     def state(self) -> tuple[str, str]:
         """(state, reason): as ``events.State``, or "interrupted" for a run whose process was killed."""
-        with self._reading() as connection:
-            values = _values(connection)
+        with self._reading() as content:
+            values = content.values()
+        return self._state(values)
+
+    def _state(self, values: Mapping[str, str]) -> tuple[str, str]:
         state, reason = values["state"], values["reason"]
+        if state not in ("new", "running", "paused", "stopped", "finished", "failed"):
+            raise DamagedRunError(self.path, f"its state is '{state[:20]}'")
         if state in ("new", "running", "paused") and not is_being_written(self.path):
+            if values.get("open") and not log_path(self._real).exists():
+                # Closed in good order it would not say that it is open; killed it would have its log beside it.
+                return "interrupted", (
+                    f"a copy that was made while the run was being written, or its {self._real.name}-wal is lost: "
+                    "what came after its last generation is not in it; it can go on from there"
+                )
             return "interrupted", "its process ended before it was finished; it can go on from there"
         return state, reason
 
     def progress(self) -> tuple[int, int]:
         """(generations finished, evaluations finished): a cheap look whether there is news."""
-        with self._reading() as connection:
-            row = connection.execute(
-                "SELECT (SELECT max(number) FROM generations), (SELECT count(*) FROM evaluations)"
-            ).fetchone()
-        return int(row[0] or 0), int(row[1])
+        with self._reading() as content:
+            counts = content.tally.counts
+        return counts.get("generations", 0), counts.get("evaluations", 0)
 
     def generations_asked(self) -> int:
         """Generations asked for in total, extensions included: a cheap look."""
-        with self._reading() as connection:
-            return int(_values(connection)["generations"])
+        with self._reading() as content:
+            return int(content.values()["generations"])
 
     def summary(self) -> dict[str, Any]:
         """The run in numbers, ready for JSON."""
-        with self._reading() as connection:
-            values = _values(connection)
-            rows = connection.execute(
-                "SELECT level, count(*), sum(status <> 'ok'), sum(feasible), sum(elapsed) FROM evaluations "
-                "WHERE origin <> 'hand' GROUP BY level ORDER BY level"
-            ).fetchall()
-            by_hand = connection.execute("SELECT count(*) FROM evaluations WHERE origin = 'hand'").fetchone()[0]
-            wall = connection.execute("SELECT level, count(*), sum(elapsed) FROM generations GROUP BY level").fetchall()
-            journal = connection.execute("SELECT at, text FROM journal ORDER BY id").fetchall()
-        state, reason = self.state()
+        with self._reading() as content:
+            values = content.values()
+            rows = [_record("evaluations", row) for row in content.all_rows("evaluations", "id")]
+            generations = [_record("generations", row) for row in content.all_rows("generations", "number")]
+            journal = [_record("journal", row) for row in content.all_rows("journal", "id")]
+        searched = [row for row in rows if row["origin"] != "hand"]
+        levels = sorted({row["level"] for row in searched})
+        state, reason = self._state(values)
         settings = self.case.optimization
         last = self.generation()
         result: dict[str, Any] = {
@@ -120,16 +171,29 @@ class RunReader:
             "seed": settings.seed,
             "objectives": [self.case.objectives.first, self.case.objectives.second],
             "evaluations": {
-                str(level): {"count": count, "failed": failed, "feasible": feasible, "processor_seconds": seconds}
-                for level, count, failed, feasible, seconds in rows
+                str(level): {
+                    "count": len(at_level),
+                    "failed": sum(row["status"] != "ok" for row in at_level),
+                    "feasible": sum(row["feasible"] for row in at_level),
+                    "processor_seconds": sum(row["elapsed"] for row in at_level),
+                }
+                for level in levels
+                for at_level in ([row for row in searched if row["level"] == level],)
             },
-            "designs_by_hand": by_hand,
-            "wall_seconds": {str(level): seconds for level, _, seconds in wall},
-            "generations_by_level": {str(level): count for level, count, _ in wall},
+            "designs_by_hand": len(rows) - len(searched),
+            "wall_seconds": {
+                str(level): sum(row["elapsed"] for row in generations if row["level"] == level)
+                for level in sorted({row["level"] for row in generations})
+            },
+            "generations_by_level": {
+                str(level): sum(row["level"] == level for row in generations)
+                for level in sorted({row["level"] for row in generations})
+            },
             "versions": json.loads(values["versions"]),
             "created": time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(float(values["created_at"]))),
             "journal": [
-                {"at": time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(at)), "text": text} for at, text in journal
+                {"at": time.strftime("%Y-%m-%d %H:%M:%S", time.localtime(row["at"])), "text": row["text"]}
+                for row in journal
             ],
         }
         if last is not None:
@@ -148,12 +212,15 @@ class RunReader:
         known = 0
         while known + 1 in self._generations:
             known += 1
-        with self._reading() as connection:
-            rows = connection.execute(
-                "SELECT number, data, elapsed, finished_at FROM generations WHERE number > ? ORDER BY number", (known,)
-            ).fetchall()
-        for number, data, elapsed, finished_at in rows:
-            self._generations[number] = GenerationRecord(generation_from_text(data), elapsed, finished_at)
+        with self._reading() as content:
+            for row in content.rows("generations", "WHERE number > ? ORDER BY number", (known,)):
+                number, level, data, elapsed, finished_at = row
+                generation = generation_from_text(data)
+                if (generation.number, generation.level) != (number, level):
+                    raise DamagedRunError(self.path, f"generation {number} contradicts itself")
+                self._generations[number] = GenerationRecord(generation, elapsed, finished_at)
+            if set(self._generations) != set(range(1, content.tally.counts.get("generations", 0) + 1)):
+                raise DamagedRunError(self.path, "a generation is missing")
         return tuple(self._generations[number] for number in sorted(self._generations) if number > after)
 
     def generations(self, after: int = 0) -> tuple[Generation, ...]:
@@ -185,21 +252,16 @@ class RunReader:
         """
         missing = [number for number in ids if number not in self._designs]
         if missing:
-            dictionary = b""
-            with self._reading() as connection:
+            with self._reading() as content:
                 for number in missing:
                     row = None
                     if abs(number) < _BEYOND_ANY_ID:
-                        row = connection.execute(
-                            "SELECT origin, generation, variables, result FROM evaluations WHERE id = ?", (number,)
-                        ).fetchone()
+                        row = next(content.rows("evaluations", "WHERE id = ?", (number,)), None)
                     if row is None:
                         raise InputError(f"{self.path}: has no design {number}; see 'hpsop show {self.path} --front'")
-                    origin, generation, variables, result = row
-                    # Asked after the row: it was written with the first one.
-                    dictionary = dictionary or bytes.fromhex(_values(connection)["dictionary"])
-                    evaluation = evaluation_from_dict(unpack(result, dictionary, variables))
-                    self._designs[number] = DesignRecord(number, origin, generation, evaluation)
+                    record = _record("evaluations", row)
+                    evaluation = evaluation_from_dict(content.document(row))
+                    self._designs[number] = DesignRecord(number, record["origin"], record["generation"], evaluation)
         return tuple(self._designs[number] for number in ids)
 
     def design(self, name: int | str, generation: int | None = None) -> DesignRecord:
@@ -224,10 +286,10 @@ class RunReader:
         Raises:
             InputError: it is not evaluated yet.
         """
-        with self._reading() as connection:
-            row = connection.execute(
-                "SELECT id FROM evaluations WHERE origin = 'initial' ORDER BY level <> ? LIMIT 1", (level,)
-            ).fetchone()
+        with self._reading() as content:
+            # An initial design has an id below the search's: no look at thousands of others.
+            which = "WHERE id < ? AND origin = 'initial' ORDER BY level <> ? LIMIT 1"
+            row = next(content.rows("evaluations", which, (FIRST_SEARCH_ID, level)), None)
         if row is None:
             raise InputError(f"{self.path}: its initial design is not evaluated yet; let the run go on")
         return self.designs([int(row[0])])[0]
@@ -264,23 +326,25 @@ class RunReader:
                 the last finished generation.
             by_hand: designs made by hand instead of the search's.
         """
-        kind = "origin = 'hand'" if by_hand else "origin <> 'hand'"
-        with self._reading() as connection:
-            rows = connection.execute(
-                "SELECT id, level, origin, generation, status, first_objective, second_objective, feasible "
-                f"FROM evaluations WHERE id > ? AND (? IS NULL OR level = ?) AND {kind} ORDER BY id",
-                (after, level, level),
-            ).fetchall()
+        with self._reading() as content:
+            if after:
+                rows = list(content.rows("evaluations", "WHERE id > ? ORDER BY id", (after,)))
+            else:
+                rows = content.all_rows("evaluations", "id")
+        records = [_record("evaluations", row) for row in rows]
         return tuple(
             ArchivePoint(
-                id=row[0],
-                level=row[1],
-                origin=row[2],
-                generation=row[3],
-                objectives=(row[5], row[6]) if row[4] == "ok" else None,
-                feasible=bool(row[7]),
+                id=record["id"],
+                level=record["level"],
+                origin=record["origin"],
+                generation=record["generation"],
+                objectives=(record["first_objective"], record["second_objective"])
+                if record["status"] == "ok"
+                else None,
+                feasible=bool(record["feasible"]),
             )
-            for row in rows
+            for record in records
+            if (record["origin"] == "hand") == by_hand and level in (None, record["level"])
         )
 
     def by_hand(self) -> tuple[DesignRecord, ...]:
@@ -289,36 +353,32 @@ class RunReader:
 
     def failures(self) -> tuple[Failure, ...]:
         """Failed evaluations, in the order asked."""
-        with self._reading() as connection:
-            rows = connection.execute(
-                "SELECT id, level, generation, stage, reason, variables, elapsed FROM evaluations "
-                "WHERE status <> 'ok' ORDER BY id"
-            ).fetchall()
+        with self._reading() as content:
+            records = [_record("evaluations", row) for row in content.all_rows("evaluations", "id")]
         return tuple(
             Failure(
-                id=number,
-                level=level,
-                generation=generation,
-                stage=stage,
-                reason=reason,
-                variables=DesignVariables.from_dict(named_variables(variables)),
-                elapsed=elapsed,
+                id=record["id"],
+                level=record["level"],
+                generation=record["generation"],
+                stage=record["stage"],
+                reason=record["reason"],
+                variables=DesignVariables.from_dict(named_variables(record["variables"])),
+                elapsed=record["elapsed"],
             )
-            for number, level, generation, stage, reason, variables, elapsed in rows
+            for record in records
+            if record["status"] != "ok"
         )
 
     def reference(self, level: int) -> dict[str, Any] | None:
         """What normalises at a level, as ``Reference.as_dict`` gave it; None if it is not there (yet)."""
-        with self._reading() as connection:
-            row = connection.execute("SELECT data FROM reference WHERE level = ?", (level,)).fetchone()
-        if row is None:
-            return None
-        data: dict[str, Any] | None = json.loads(row[0])
+        with self._reading() as content:
+            row = next(content.rows("reference", "WHERE level = ?", (level,)), None)
+            data: dict[str, Any] | None = None if row is None else json.loads(row[1])
         return data
 
 
-def _values(connection: sqlite3.Connection) -> dict[str, str]:
-    return dict(connection.execute("SELECT key, value FROM run").fetchall())
+def _record(table: str, row: Sequence[Any]) -> dict[str, Any]:
+    return dict(zip(COLUMNS[table], row, strict=True))
 
 
 def open_run(path: str | Path) -> RunReader:

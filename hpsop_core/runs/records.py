@@ -5,13 +5,16 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
+from collections.abc import Mapping
 from dataclasses import dataclass
+from pathlib import Path
 from typing import Any
 
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.optimization.generation import Generation
+from hpsop_core.runs.checksums import DamagedRunError
 
 
 @dataclass(frozen=True)
@@ -136,6 +139,34 @@ def fingerprint(level: int, variables: str) -> int:
     """
     digest = hashlib.sha256(f"{level} {variables}".encode()).digest()
     return int.from_bytes(digest[:8], "big", signed=True)
+
+
+def check_agreement(path: Path, record: Mapping[str, Any], document: Mapping[str, Any]) -> None:
+    """Whether an evaluation's row says what its JSON says: all that can be checked where there are no checksums.
+
+    Args:
+        path: of the run file, for the error.
+        record: the row's cells by column.
+        document: the JSON.
+
+    Raises:
+        DamagedRunError: they differ.
+    """
+    said = (
+        document["level"],
+        document["status"],
+        document.get("stage", ""),
+        document["reason"],
+        bool(document["feasible"]),
+        document["objectives"]["f1"],
+        document["objectives"]["f2"],
+        document["elapsed"],
+        fingerprint(record["level"], record["variables"]),
+    )
+    names = ("level", "status", "stage", "reason", "feasible", "first_objective", "second_objective", "elapsed")
+    stands = tuple(bool(record[name]) if name == "feasible" else record[name] for name in (*names, "fingerprint"))
+    if said != stands:
+        raise DamagedRunError(path, f"design {record['id']} contradicts itself")
 
 
 def identifier(word: str) -> int | str:

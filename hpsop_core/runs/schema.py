@@ -1,20 +1,26 @@
-"""The run file's tables, its version, and how its connections are opened."""
+"""The run file's tables and its version."""
 
 from __future__ import annotations
 
 import importlib.metadata
 import platform
+import re
 import sqlite3
-import time
+from functools import lru_cache
 from pathlib import Path
-from urllib.parse import quote
 
 from hpsop_core.errors import InputError
+from hpsop_core.runs.checksums import DamagedRunError
 
 APPLICATION_ID = 0x48505350
 """Stands in the file's header, so that any tool can tell a run file from another SQLite file ("HPSP")."""
 
-SCHEMA_VERSION = 3
+SCHEMA_VERSION = 4
+OLDEST_SCHEMA = 2
+"""The oldest version that is read; 1 was never published. 3 keeps more of the initial design's numbers in a reference (an
+old reference stays as it is: whoever reads it knows the three numbers that it has); 4 has checksums and files."""
+
+CHECKSUMS_SINCE = 4
 
 HAND_IDS_BEGIN = 1_000_000_001
 """Ids of designs made by hand begin here: the search's own ids count from 1 in the order asked, come what may."""
@@ -31,20 +37,51 @@ def initial_id(level: int) -> int:
 FIRST_SEARCH_ID = 3
 """Ids of the search's own designs begin after the initial design's."""
 
-# How to lift a file from an older schema, by the version it has. Version 1 was never published.
-MIGRATIONS: dict[int, str] = {
-    # 3 keeps more of the initial design's numbers in a reference. An old reference stays as it is: whoever reads it
-    # knows the three numbers that it has.
-    2: "SELECT 1",
+COLUMNS: dict[str, tuple[str, ...]] = {
+    "run": ("key", "value"),
+    "files": ("section", "field", "name", "sha256", "content"),
+    "reference": ("level", "data"),
+    "evaluations": (
+        "id",
+        "level",
+        "variables",
+        "origin",
+        "generation",
+        "status",
+        "stage",
+        "reason",
+        "feasible",
+        "first_objective",
+        "second_objective",
+        "elapsed",
+        "finished_at",
+        "fingerprint",
+        "result",
+    ),
+    "generations": ("number", "level", "data", "elapsed", "finished_at"),
+    "journal": ("id", "at", "text"),
 }
+"""The tables' columns, in the order in which a record's checksum goes over them; each has "checksum" after these."""
+
+RUN_KEYS = ("case", "case_name", "seeds", "generations", "versions", "created_at", "state", "reason")
+"""What every run file has in its table ``run``; those with checksums also "tally" and "open"."""
 
 _TABLES = """
-CREATE TABLE run (key TEXT PRIMARY KEY, value TEXT NOT NULL) WITHOUT ROWID;
-CREATE TABLE reference (level INTEGER PRIMARY KEY, data TEXT NOT NULL);
+CREATE TABLE run (key TEXT PRIMARY KEY, value TEXT NOT NULL, checksum INTEGER NOT NULL) WITHOUT ROWID;
+CREATE TABLE files (
+    section TEXT NOT NULL,        -- of the case, and its field, that name the file
+    field TEXT NOT NULL,
+    name TEXT NOT NULL,           -- the file's own, without folder
+    sha256 TEXT NOT NULL,         -- of its bytes
+    content BLOB NOT NULL,        -- its bytes, deflated
+    checksum INTEGER NOT NULL,
+    PRIMARY KEY (section, field)
+) WITHOUT ROWID;
+CREATE TABLE reference (level INTEGER PRIMARY KEY, data TEXT NOT NULL, checksum INTEGER NOT NULL);
 CREATE TABLE evaluations (
     id INTEGER PRIMARY KEY,
     level INTEGER NOT NULL,
-    variables TEXT NOT NULL,      -- the nine variables as JSON, every digit
+    variables TEXT NOT NULL,      -- the design variables as JSON, every digit
     origin TEXT NOT NULL,         -- initial, sample, seed, offspring, handover, reseed, hand
     generation INTEGER NOT NULL,  -- that asked for it first; 0 is before all
     status TEXT NOT NULL,
@@ -56,7 +93,8 @@ CREATE TABLE evaluations (
     elapsed REAL NOT NULL,
     finished_at REAL NOT NULL,    -- seconds since 1970
     fingerprint INTEGER NOT NULL, -- of level and variables
-    result BLOB NOT NULL          -- the evaluation's whole JSON, packed (packing.py)
+    result BLOB NOT NULL,         -- the evaluation's whole JSON, packed (packing.py)
+    checksum INTEGER NOT NULL     -- of all cells before it (checksums.py), here and in the other tables
 );
 CREATE UNIQUE INDEX one_evaluation ON evaluations (fingerprint) WHERE origin <> 'hand';
 CREATE INDEX failed_evaluations ON evaluations (status) WHERE status <> 'ok';
@@ -65,9 +103,10 @@ CREATE TABLE generations (
     level INTEGER NOT NULL,
     data TEXT NOT NULL,           -- members, front, indicators, choices as JSON
     elapsed REAL NOT NULL,
-    finished_at REAL NOT NULL
+    finished_at REAL NOT NULL,
+    checksum INTEGER NOT NULL
 );
-CREATE TABLE journal (id INTEGER PRIMARY KEY, at REAL NOT NULL, text TEXT NOT NULL);
+CREATE TABLE journal (id INTEGER PRIMARY KEY, at REAL NOT NULL, text TEXT NOT NULL, checksum INTEGER NOT NULL);
 CREATE TRIGGER evaluations_stay BEFORE UPDATE ON evaluations
     BEGIN SELECT RAISE(ABORT, 'a finished evaluation is never changed'); END;
 CREATE TRIGGER evaluations_remain BEFORE DELETE ON evaluations
@@ -107,61 +146,20 @@ def create_tables(connection: sqlite3.Connection) -> None:
     connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
 
 
-def connect_writer(path: Path) -> sqlite3.Connection:
-    """A connection that may write; the caller holds the writer's lock."""
-    connection = sqlite3.connect(path, timeout=10.0, isolation_level=None, check_same_thread=False)
-    # Only a new file obeys: on the usual 4096 bytes an evaluation of 1 kB would leave a quarter of every page empty.
-    connection.execute("PRAGMA page_size = 16384")
-    # WAL: readers see whole generations while the run is written. NORMAL: a commit is in the kernel's hands when it
-    # returns, so no kill of the process loses it; only a power failure may take the last few (never the file).
-    connection.execute("PRAGMA journal_mode = WAL")
-    connection.execute("PRAGMA synchronous = NORMAL")
-    return connection
-
-
-def connect_reader(path: Path) -> sqlite3.Connection:
-    """A connection that never writes, also where the folder is read-only.
-
-    Raises:
-        InputError: there is no such file.
-    """
-    if not path.is_file():
-        raise InputError(f"{path}: no such run file; start one with 'hpsop optimize CASE --run {path}'")
-    attempts = 3
-    while True:
-        address = f"file:{quote(str(path.resolve()))}?mode=ro"
-        if not path.with_name(path.name + "-wal").exists():
-            # Nobody has it open for writing. Without this flag SQLite would want to make side files for a WAL file,
-            # which fails in a read-only folder and leaves litter in any other.
-            address += "&immutable=1"
-        connection = sqlite3.connect(address, uri=True, timeout=10.0, isolation_level=None, check_same_thread=False)
-        try:
-            connection.execute("PRAGMA schema_version").fetchone()
-            return connection
-        except sqlite3.OperationalError:
-            # The writer has just come or gone, between our look at its log and our opening of the file.
-            connection.close()
-            attempts -= 1
-            if attempts == 0:
-                raise
-            time.sleep(0.05)
-        except sqlite3.DatabaseError:
-            return connection  # no database at all: the caller asks and hears it again, with the words for people
-
-
 def schema_version(connection: sqlite3.Connection, path: Path) -> int:
     """The file's schema version; 0 for an empty file.
 
     Raises:
         InputError: no SQLite file, another program's, or from a newer hpsop; one line that says which.
+        DamagedRunError: its tables are not those of its version.
     """
     try:
         application = connection.execute("PRAGMA application_id").fetchone()[0]
         version = int(connection.execute("PRAGMA user_version").fetchone()[0])
-        tables = connection.execute("SELECT count(*) FROM sqlite_master").fetchone()[0]
+        found = _declarations(connection)
     except sqlite3.DatabaseError as error:
         raise InputError(f"{path}: cannot be read as a run file ({error}); choose another file") from error
-    if application == 0 and tables == 0:
+    if application == 0 and not found:
         return 0
     if application != APPLICATION_ID:
         raise InputError(f"{path}: is a database of another program; choose another file")
@@ -169,19 +167,27 @@ def schema_version(connection: sqlite3.Connection, path: Path) -> int:
         raise InputError(
             f"{path}: was written by a newer hpsop (schema {version}, this one knows {SCHEMA_VERSION}); update hpsop"
         )
-    if any(step not in MIGRATIONS for step in range(version, SCHEMA_VERSION)):
+    if version < OLDEST_SCHEMA:
         raise InputError(f"{path}: has schema {version}, which this hpsop no longer reads; open it with an older hpsop")
+    if version == SCHEMA_VERSION and found != _own_declarations():
+        raise DamagedRunError(path, "its tables are not declared as they were")
+    # A view in a table's place may be any computation.
+    if any(kind == "view" for kind, _, _ in found):
+        raise DamagedRunError(path, "it holds a view, which no run has")
     return version
 
 
-def migrate(connection: sqlite3.Connection, version: int) -> None:
-    """Lift an older file to this schema, all or nothing."""
-    connection.execute("BEGIN IMMEDIATE")
+def _declarations(connection: sqlite3.Connection) -> frozenset[tuple[str, str, str]]:
+    """(kind, name, SQL in single spaces) of tables, indices and triggers."""
+    rows = connection.execute("SELECT type, name, sql FROM sqlite_master WHERE sql IS NOT NULL").fetchall()
+    return frozenset((str(kind), str(name), re.sub(r"\s+", " ", str(sql)).strip()) for kind, name, sql in rows)
+
+
+@lru_cache(maxsize=1)
+def _own_declarations() -> frozenset[tuple[str, str, str]]:
+    connection = sqlite3.connect(":memory:", isolation_level=None)
     try:
-        for step in range(version, SCHEMA_VERSION):
-            connection.execute(MIGRATIONS[step])
-        connection.execute(f"PRAGMA user_version = {SCHEMA_VERSION}")
-        connection.execute("COMMIT")
-    except sqlite3.Error:
-        connection.execute("ROLLBACK")
-        raise
+        create_tables(connection)
+        return _declarations(connection)
+    finally:
+        connection.close()

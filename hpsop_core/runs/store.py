@@ -8,6 +8,7 @@ import os
 import sqlite3
 import threading
 import time
+import zlib
 from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
@@ -18,17 +19,22 @@ from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.problem import Candidate, Outcome
-from hpsop_core.runs.lock import WriterLock
-from hpsop_core.runs.packing import dictionary_of, pack, unpack
+from hpsop_core.runs.checksums import Tally, checksum, damage_told
+from hpsop_core.runs.connections import begin_log, checkpoint, connect_writer, log_path, real_path
+from hpsop_core.runs.content import RunContent
+from hpsop_core.runs.lock import WriterLock, refuse_second_name
+from hpsop_core.runs.migrations import lift
+from hpsop_core.runs.packing import dictionary_of, pack
 from hpsop_core.runs.records import fingerprint, generation_from_text, generation_text, json_text, variables_text
 from hpsop_core.runs.schema import (
+    COLUMNS,
     HAND_IDS_BEGIN,
-    connect_writer,
+    SCHEMA_VERSION,
     create_tables,
-    migrate,
     schema_version,
     software_versions,
 )
+from hpsop_core.runs.ship import ShipFile, named_files, read_files, refuse_changed_ship, with_files, with_names
 
 
 class StoreUnwritableError(HpsopError):
@@ -51,6 +57,10 @@ class RunStore:
     6. A write that fails raises ``StoreUnwritableError`` and leaves the file as it was; it may be tried again.
     7. An older file opens, or the refusal says why not. A file of another program is never touched.
 
+    8. A record that is not what was written is said, never given back as a number: each has a checksum.
+    9. The file alone holds the case, its hull and propeller files, and all but the generation under way (a copy of it
+       too, if it was not made during the milliseconds of a checkpoint); its log is empty after each generation.
+
     The file holds the exact case, the seeds, software versions, references, evaluations, generations, and a journal of
     what happened to the run. Every number comes back with every digit. Keep it on a local disk: the locks of network
     file systems do not keep these promises.
@@ -64,21 +74,30 @@ class RunStore:
         created: whether the run was begun by this very call.
 
     Raises:
-        InputError: no run and no case, not a run file, a newer schema, or a second writer.
+        InputError: no run and no case, not a run file, a newer schema, a second writer, a file whose log is lost
+            before anything was in it, or a case that could not be read again.
+        DamagedRunError: what stands in it was not written so.
     """
 
     def __init__(self, path: Path, case: Case | None = None, seeds: Sequence[DesignVariables] = ()) -> None:
         self.path = path
         self.created = False
         self._guard = threading.RLock()
+        self._dictionary = b""
+        self._real = real_path(path)
         if path.is_dir():
             raise InputError(f"{path}: is a folder; name a file, for example {path / 'run.hpsop'}")
         self._lock = WriterLock(path)
         try:
+            refuse_second_name(path)
             self._connection = self._opened(case, seeds)
-            self._file = os.stat(path)
-            self._case = case_from_toml(self.value("case"), str(path))
-            self._seeds = tuple(DesignVariables.from_dict(seed) for seed in json.loads(self.value("seeds")))
+            try:
+                self._file = os.stat(self._real)
+                with damage_told(path):
+                    self._load()
+            except BaseException:
+                self._connection.close()
+                raise
         except BaseException:
             self._lock.release()
             raise
@@ -86,32 +105,105 @@ class RunStore:
     def _opened(self, case: Case | None, seeds: Sequence[DesignVariables]) -> sqlite3.Connection:
         path = self.path
         missing = InputError(f"{path}: holds no run; start one with 'hpsop optimize CASE --run {path}'")
+        lost = self._lost_log()
+        if lost:
+            raise InputError(lost)
         if case is None and not path.is_file():
             raise missing
+        there, self._had_log = self._real.exists(), log_path(self._real).exists()
+        connection = None
         try:
-            connection = sqlite3.connect(path, isolation_level=None)
+            connection = connect_writer(self._real)
             version = schema_version(connection, path)
-            connection.close()
             self.created = version == 0
-            if version > 0:
-                connection = connect_writer(path)
-                migrate(connection, version)
-            elif case is None:
-                raise missing
-            else:
-                connection = connect_writer(path)
+            if version == 0:
+                if self._real.stat().st_size > 0:
+                    raise InputError(
+                        f"{path}: is a database without content: a copy of a run without its {path.name}-wal, perhaps; "
+                        "copy both, or delete it to begin anew"
+                    )
+                if case is None:
+                    raise missing
                 _create(connection, case, seeds)
-        except sqlite3.Error as error:
-            raise InputError(f"{path}: cannot be written ({error}); make room or choose another place") from error
+            elif version < SCHEMA_VERSION:
+                lift(connection, path)
+            begin_log(connection)
+        except BaseException as error:
+            if connection is not None:
+                connection.close()
+            with contextlib.suppress(OSError):
+                if not there and self._real.stat().st_size == 0:
+                    self._real.unlink()
+            if isinstance(error, sqlite3.Error):
+                raise InputError(f"{path}: cannot be written ({error}); make room or choose another place") from error
+            raise
         return connection
+
+    def _lost_log(self) -> str:
+        """Why a new run must not begin here though there is no run: what is left of another one; else ""."""
+        log = log_path(self._real)
+        with contextlib.suppress(OSError):
+            if log.stat().st_size > 0 and not (self._real.exists() and self._real.stat().st_size > 0):
+                return (
+                    f"{self.path}: is gone or empty, but {log.name} still holds evaluations of it; "
+                    f"put the file back, or delete {log.name} to begin anew"
+                )
+        return ""
+
+    def _load(self) -> None:
+        content = RunContent(self._connection, self.path, SCHEMA_VERSION)
+        values = content.values()
+        self._tally = content.tally
+        stored = case_from_toml(values["case"], str(self.path))
+        self._files = content.files()
+        self._case = with_files(stored, self._files)
+        self._seeds = tuple(DesignVariables.from_dict(seed) for seed in json.loads(values["seeds"]))
+        if not self._files:
+            self._take_aboard(stored)
+        if values["open"] and not self.created and not self._had_log:
+            self.note(
+                f"opened without its {self._real.name}-wal: what came after the last generation is computed again"
+            )
+        try:
+            self.set_values(open="1")
+        except StoreUnwritableError as error:
+            raise InputError(f"{error}; make room or choose another place") from error
+        self.checkpoint()
+
+    def _take_aboard(self, case: Case) -> None:
+        """A run of an earlier version named files elsewhere: from now on it holds them, if they are still the same.
+
+        Raises:
+            InputError: one is gone or was changed since the run was begun.
+        """
+        if not named_files(case):
+            return
+        row = next(self._content().rows("evaluations", "WHERE origin = 'initial' AND status = 'ok' LIMIT 1"), None)
+        if row is not None:
+            refuse_changed_ship(self.path, case, self._content().document(row))
+        files = read_files(case)
+        with self._writing() as connection:
+            self._insert_files(connection, files)
+            self._put_values(connection, {"case": with_names(case, files).to_toml()})
+        self._files, self._case = files, with_files(case, files)
+
+    def _content(self) -> RunContent:
+        return RunContent(self._connection, self.path, SCHEMA_VERSION)
 
     def close(self) -> None:
         """Close the file and give the lock back; doing so twice does nothing."""
         with self._guard:
             # A disk that is full now must not keep the run from closing: the write-ahead log stays and is read again.
+            with contextlib.suppress(sqlite3.Error, StoreUnwritableError):
+                self.set_values(open="")
             with contextlib.suppress(sqlite3.Error):
                 self._connection.close()
             self._lock.release()
+
+    def checkpoint(self) -> None:
+        """Bring what is in the log into the file itself; what readers hinder is done the next time."""
+        with self._guard:
+            checkpoint(self._connection)
 
     # -- what was asked --------------------------------------------------------------------------------------------
 
@@ -121,6 +213,11 @@ class RunStore:
         return self._case
 
     @property
+    def files(self) -> tuple[ShipFile, ...]:
+        """The files of the case's own hull and propeller."""
+        return self._files
+
+    @property
     def seeds(self) -> tuple[DesignVariables, ...]:
         """Designs that the run was started from."""
         return self._seeds
@@ -128,13 +225,14 @@ class RunStore:
     @property
     def generations(self) -> int:
         """Generations asked for in total, extensions included."""
-        return int(self.value("generations"))
+        with damage_told(self.path):
+            return int(self.value("generations"))
 
     def value(self, key: str, default: str = "") -> str:
         """A value of the run by its key."""
-        with self._guard:
-            row = self._connection.execute("SELECT value FROM run WHERE key = ?", (key,)).fetchone()
-        return default if row is None else str(row[0])
+        with self._guard, damage_told(self.path):
+            row = next(self._content().rows("run", "WHERE key = ?", (key,)), None)
+        return default if row is None else str(row[1])
 
     def set_values(self, **values: str) -> None:
         """Set values of the run, all or none.
@@ -143,8 +241,7 @@ class RunStore:
             StoreUnwritableError: the file cannot be written.
         """
         with self._writing() as connection:
-            for key, value in values.items():
-                connection.execute("INSERT OR REPLACE INTO run VALUES (?, ?)", (key, value))
+            self._put_values(connection, values)
 
     def note(self, text: str) -> None:
         """Add a line to the run's journal.
@@ -153,15 +250,16 @@ class RunStore:
             StoreUnwritableError: the file cannot be written.
         """
         with self._writing() as connection:
-            connection.execute("INSERT INTO journal (at, text) VALUES (?, ?)", (time.time(), text))
+            last = connection.execute("SELECT max(id) FROM journal").fetchone()[0]
+            self._insert(connection, "journal", (int(last or 0) + 1, time.time(), text))
 
     # -- references ------------------------------------------------------------------------------------------------
 
     def reference(self, level: int) -> str | None:
         """A level's reference as JSON text, or None if it is not stored yet."""
-        with self._guard:
-            row = self._connection.execute("SELECT data FROM reference WHERE level = ?", (level,)).fetchone()
-        return None if row is None else str(row[0])
+        with self._guard, damage_told(self.path):
+            row = next(self._content().rows("reference", "WHERE level = ?", (level,)), None)
+        return None if row is None else str(row[1])
 
     def record_reference(self, level: int, text: str) -> None:
         """Store a level's reference as JSON text.
@@ -170,21 +268,21 @@ class RunStore:
             StoreUnwritableError: the file cannot be written.
         """
         with self._writing() as connection:
-            connection.execute("INSERT INTO reference VALUES (?, ?)", (level, text))
+            self._insert(connection, "reference", (level, text))
 
     # -- evaluations -----------------------------------------------------------------------------------------------
 
     def outcomes(self) -> dict[tuple[int, str], Outcome]:
         """Every evaluation of the search by (level, variables text)."""
-        with self._guard:
-            rows = self._connection.execute(
-                "SELECT level, variables, id, result FROM evaluations WHERE origin <> 'hand'"
-            ).fetchall()
-            dictionary = bytes.fromhex(self.value("dictionary"))
-        return {
-            (level, text): Outcome.from_json(number, unpack(result, dictionary, text))
-            for level, text, number, result in rows
-        }
+        found = {}
+        with self._guard, damage_told(self.path):
+            content = self._content()
+            for row in content.all_rows("evaluations", "id"):
+                record = dict(zip(COLUMNS["evaluations"], row, strict=True))
+                if record["origin"] != "hand":
+                    outcome = Outcome.from_json(record["id"], content.document(row))
+                    found[record["level"], record["variables"]] = outcome
+        return found
 
     def elapsed_of(self, number: int) -> float | None:
         """How long an evaluation took in s, or None if there is none of that number."""
@@ -215,7 +313,7 @@ class RunStore:
         data = json.loads(result)
         with self._writing() as connection:
             variables, origin = candidate.variables, candidate.origin
-            _insert(connection, number, candidate.level, variables, origin, generation, data)
+            self._insert_evaluation(connection, number, candidate.level, variables, origin, generation, data)
         return Outcome.from_json(number, data)
 
     def record_by_hand(self, evaluation: Evaluation) -> int:
@@ -238,32 +336,33 @@ class RunStore:
                 return int(row[0])
             last = connection.execute("SELECT max(id) FROM evaluations WHERE origin = 'hand'").fetchone()[0]
             number = HAND_IDS_BEGIN if last is None else int(last) + 1
-            _insert(connection, number, evaluation.level, evaluation.variables, "hand", 0, data)
+            self._insert_evaluation(connection, number, evaluation.level, evaluation.variables, "hand", 0, data)
         return number
 
     # -- generations -----------------------------------------------------------------------------------------------
 
     def generation(self, number: int) -> Generation | None:
         """A finished generation, or None."""
-        with self._guard:
-            row = self._connection.execute("SELECT data FROM generations WHERE number = ?", (number,)).fetchone()
-        return None if row is None else generation_from_text(row[0])
+        with self._guard, damage_told(self.path):
+            row = next(self._content().rows("generations", "WHERE number = ?", (number,)), None)
+            return None if row is None else generation_from_text(row[2])
 
     def generation_times(self) -> list[tuple[int, float]]:
         """(level, wall time in s) of every finished generation, in order."""
-        with self._guard:
-            rows = self._connection.execute("SELECT level, elapsed FROM generations ORDER BY number").fetchall()
-        return [(int(level), float(elapsed)) for level, elapsed in rows]
+        with self._guard, damage_told(self.path):
+            rows = self._content().all_rows("generations", "number")
+        return [(int(level), float(elapsed)) for _, level, _, elapsed, _ in rows]
 
     def record_generation(self, generation: Generation, elapsed: float) -> None:
-        """Store a finished generation.
+        """Store a finished generation, and bring all that there is into the file itself.
 
         Raises:
             StoreUnwritableError: the file cannot be written.
         """
-        row = (generation.number, generation.level, generation_text(generation), elapsed, time.time())
+        row = (int(generation.number), int(generation.level), generation_text(generation), float(elapsed), time.time())
         with self._writing() as connection:
-            connection.execute("INSERT INTO generations VALUES (?, ?, ?, ?, ?)", row)
+            self._insert(connection, "generations", row)
+        self.checkpoint()
 
     # -- writing ---------------------------------------------------------------------------------------------------
 
@@ -272,31 +371,108 @@ class RunStore:
         with self._guard:
             self._check_file()
             connection = self._connection
+            before = self._tally.copy()
             try:
                 connection.execute("BEGIN IMMEDIATE")
                 yield connection
+                if self._tally != before:
+                    self._put_values(connection, {"tally": self._tally.text()})
                 connection.execute("COMMIT")
             except BaseException as error:
+                self._tally = before
                 if connection.in_transaction:
                     with contextlib.suppress(sqlite3.Error):
                         connection.execute("ROLLBACK")
-                if isinstance(error, sqlite3.OperationalError):
+                if isinstance(error, sqlite3.DatabaseError) and not isinstance(
+                    error, (sqlite3.IntegrityError, sqlite3.ProgrammingError)
+                ):
                     raise StoreUnwritableError(f"{self.path}: {error}") from error
                 raise
 
     def _check_file(self) -> None:
         # SQLite goes on writing to a file that has lost its name, and all would be gone at the end.
         try:
-            there = os.stat(self.path)
+            there = os.stat(self._real)
         except OSError as error:
-            raise StoreUnwritableError(f"{self.path}: the file is gone ({error.strerror})") from error
+            raise StoreUnwritableError(f"{self.path}: the file is gone ({error.strerror}); put it back") from error
         if (there.st_ino, there.st_dev) != (self._file.st_ino, self._file.st_dev):
-            raise StoreUnwritableError(f"{self.path}: another file stands in its place")
+            raise StoreUnwritableError(f"{self.path}: another file stands in its place; put the run's own back")
+        if there.st_size < self._file.st_size:
+            # A run file never shrinks.
+            raise StoreUnwritableError(
+                f"{self.path}: was cut short by another program (from {self._file.st_size} to {there.st_size} bytes); "
+                "what is left cannot be trusted: stop this run and start it anew in another file"
+            )
+        self._file = there
+
+    def _put_values(self, connection: sqlite3.Connection, values: dict[str, str]) -> None:
+        connection.executemany(
+            "INSERT OR REPLACE INTO run VALUES (?, ?, ?)",
+            [(key, value, checksum("run", (key, value))) for key, value in values.items()],
+        )
+
+    def _insert(self, connection: sqlite3.Connection, table: str, row: tuple[Any, ...]) -> None:
+        value = checksum(table, row)
+        connection.execute(f"INSERT INTO {table} VALUES ({','.join('?' * (len(row) + 1))})", (*row, value))
+        self._tally.add(table, value)
+
+    def _insert_files(self, connection: sqlite3.Connection, files: Sequence[ShipFile]) -> None:
+        for file in files:
+            row = (file.section, file.field, file.name, file.sha256, zlib.compress(file.content, 6))
+            self._insert(connection, "files", row)
+
+    def _insert_evaluation(
+        self,
+        connection: sqlite3.Connection,
+        number: int,
+        level: int,
+        variables: DesignVariables,
+        origin: str,
+        generation: int,
+        data: dict[str, Any],
+    ) -> None:
+        # Remembered once it is read from the file: a write that fails takes its dictionary along.
+        self._dictionary = self._dictionary or bytes.fromhex(self.value("dictionary"))
+        dictionary = self._dictionary or dictionary_of(data)
+        if not self._dictionary:
+            self._put_values(connection, {"dictionary": dictionary.hex()})
+        text = variables_text(variables)
+        first, second = data["objectives"]["f1"], data["objectives"]["f2"]
+        row = (
+            int(number),
+            int(level),
+            text,
+            origin,
+            int(generation),
+            data["status"],
+            data.get("stage", ""),
+            data["reason"],
+            int(data["feasible"]),
+            None if first is None else float(first),
+            None if second is None else float(second),
+            float(data["elapsed"]),
+            time.time(),
+            fingerprint(level, text),
+            pack(data, dictionary),
+        )
+        self._insert(connection, "evaluations", row)
+        if origin == "hand":
+            self._tally.counts["hand"] = self._tally.counts.get("hand", 0) + 1
 
 
 def _create(connection: sqlite3.Connection, case: Case, seeds: Sequence[DesignVariables]) -> None:
+    """All of a new run in one transaction: a kill leaves an empty file or a run.
+
+    Raises:
+        InputError: the case or one of its files would not be read again.
+    """
+    files = read_files(case)
+    named = with_names(case, files)
+    text = named.to_toml()
+    if case_from_toml(text, named.name) != named:
+        raise InputError(f"{named.name[:60]}: the case would not be the same when it is read again; simplify its texts")
     values = {
-        "case": case.to_toml(),
+        "case": text,
         "case_name": case.name,
         "seeds": json_text([seed.as_dict() for seed in seeds]),
         "generations": str(case.optimization.generations),
@@ -304,47 +480,22 @@ def _create(connection: sqlite3.Connection, case: Case, seeds: Sequence[DesignVa
         "created_at": repr(time.time()),
         "state": "new",
         "reason": "",
+        "open": "1",
     }
     connection.execute("BEGIN IMMEDIATE")
     try:
         create_tables(connection)
-        connection.executemany("INSERT INTO run VALUES (?, ?)", values.items())
+        tally = Tally()
+        for file in files:
+            row = (file.section, file.field, file.name, file.sha256, zlib.compress(file.content, 6))
+            value = checksum("files", row)
+            connection.execute("INSERT INTO files VALUES (?, ?, ?, ?, ?, ?)", (*row, value))
+            tally.add("files", value)
+        values["tally"] = tally.text()
+        for key, text in values.items():
+            connection.execute("INSERT INTO run VALUES (?, ?, ?)", (key, text, checksum("run", (key, text))))
         connection.execute("COMMIT")
-    except sqlite3.Error:
+    except BaseException:
         if connection.in_transaction:
             connection.execute("ROLLBACK")
         raise
-
-
-def _insert(
-    connection: sqlite3.Connection,
-    number: int,
-    level: int,
-    variables: DesignVariables,
-    origin: str,
-    generation: int,
-    data: dict[str, Any],
-) -> None:
-    found = connection.execute("SELECT value FROM run WHERE key = 'dictionary'").fetchone()
-    dictionary = dictionary_of(data) if found is None else bytes.fromhex(found[0])
-    if found is None:
-        connection.execute("INSERT INTO run VALUES ('dictionary', ?)", (dictionary.hex(),))
-    text = variables_text(variables)
-    row = (
-        number,
-        level,
-        text,
-        origin,
-        generation,
-        data["status"],
-        data.get("stage", ""),
-        data["reason"],
-        int(data["feasible"]),
-        data["objectives"]["f1"],
-        data["objectives"]["f2"],
-        data["elapsed"],
-        time.time(),
-        fingerprint(level, text),
-        pack(data, dictionary),
-    )
-    connection.execute(f"INSERT INTO evaluations VALUES ({','.join('?' * len(row))})", row)

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import sqlite3
 import time
 from collections.abc import Callable
@@ -12,6 +13,7 @@ from typing import Any
 
 from hpsop_core.case.case import Case, load_case
 from hpsop_core.runs.reader import open_run
+from hpsop_core.runs.schema import APPLICATION_ID, COLUMNS
 
 
 def small_case(**settings: object) -> Case:
@@ -46,6 +48,37 @@ def content(path: Path, ids: bool = True) -> dict[str, Any]:
         # repr of a float is exact; comparing texts also tells -0.0 from 0.0.
         evaluations.append((*(repr(value) for value in row[0 if ids else 1 :]), json.dumps(result, sort_keys=True)))
     return {"evaluations": evaluations, "generations": generations}
+
+
+def old_file(path: Path) -> int:
+    """A finished run as the schema before the checksums wrote it; returns how many evaluations it has."""
+    import quick_physics
+
+    from hpsop_core.runs.controller import optimize
+
+    new = path.with_name("new-" + path.name)
+    optimize(small_case(), new, workers=1, physics=quick_physics.physics())
+    source, target = sqlite3.connect(new), sqlite3.connect(path)
+    declared = source.execute("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL").fetchall()
+    for (statement,) in sorted(declared, key=lambda row: "TRIGGER" in row[0] or "INDEX" in row[0]):
+        if "TABLE files" in statement:
+            continue
+        # Of the tables alone: the last column of each, with the comma before it.
+        target.execute(re.sub(r",\s*checksum INTEGER NOT NULL", "", statement))
+    for table, columns in COLUMNS.items():
+        if table != "files":
+            names, marks = ",".join(columns), ",".join("?" * len(columns))
+            keep = "WHERE key NOT IN ('tally', 'open')" if table == "run" else ""
+            target.executemany(
+                f"INSERT INTO {table} VALUES ({marks})", source.execute(f"SELECT {names} FROM {table} {keep}")
+            )
+    target.execute(f"PRAGMA application_id = {APPLICATION_ID}")
+    target.execute("PRAGMA user_version = 2")
+    target.commit()
+    count = int(target.execute("SELECT count(*) FROM evaluations").fetchone()[0])
+    source.close()
+    target.close()
+    return count
 
 
 def finished_designs(path: Path) -> set[tuple[int, str]]:

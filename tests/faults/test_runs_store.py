@@ -8,15 +8,18 @@ import sqlite3
 import subprocess
 import sys
 import threading
+from dataclasses import replace
 from pathlib import Path
 
 import pytest
 from quick_physics import evaluate
-from run_files import small_case
+from run_files import content, old_file, small_case
 
+from hpsop_core.case.case import Case
 from hpsop_core.errors import InputError
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.problem import Candidate
+from hpsop_core.runs.checksums import DamagedRunError
 from hpsop_core.runs.lock import is_being_written, lock_path
 from hpsop_core.runs.reader import open_run
 from hpsop_core.runs.records import json_text
@@ -56,7 +59,7 @@ for number in range(1, 31):
     asked = candidate(14.0 + number / 100)
     store.record_evaluation(number, asked, 1, result(asked))
 with store._writing() as connection:
-    connection.execute("INSERT INTO journal (at, text) VALUES (0, 'half written')")
+    store._insert(connection, "journal", (1, 0.0, "half written"))
     os.kill(os.getpid(), 9)
 """
     ended = subprocess.run([sys.executable, "-c", script], check=False)
@@ -234,29 +237,149 @@ def test_7_a_newer_schema_is_refused_and_an_unknown_older_one_too(path: Path) ->
                 opened()
 
 
-def test_7_an_older_schema_is_lifted(path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    RunStore(path, CASE).close()
-    monkeypatch.setattr("hpsop_core.runs.schema.SCHEMA_VERSION", SCHEMA_VERSION + 1)
-    monkeypatch.setattr(
-        "hpsop_core.runs.schema.MIGRATIONS", {SCHEMA_VERSION: "ALTER TABLE journal ADD COLUMN author TEXT"}
-    )
+def test_7_an_older_schema_is_lifted_with_every_bit(path: Path) -> None:
+    before = old_file(path)
+    old = content(path)
+    assert open_run(path).progress() == (6, before)
     store = RunStore(path)
-    assert store.case == CASE
-    store._connection.execute("SELECT author FROM journal")
+    assert len(store.outcomes()) == before
+    assert store._connection.execute("PRAGMA user_version").fetchone()[0] == SCHEMA_VERSION
     store.close()
+    assert content(path) == old
+    assert open_run(path).progress() == (6, before)
+    assert open_run(path).summary()["evaluations"]["1"]["count"] > 0
 
 
-def test_a_kill_while_the_file_is_being_made_leaves_an_empty_run_to_begin(path: Path) -> None:
-    # What a kill after the journal mode was set, and before the tables were there, leaves behind.
+def test_7_an_older_file_that_contradicts_itself_is_not_lifted(path: Path) -> None:
+    old_file(path)
     connection = sqlite3.connect(path)
-    connection.execute("PRAGMA journal_mode = WAL")
+    connection.execute("DROP TRIGGER evaluations_stay")
+    connection.execute("UPDATE evaluations SET first_objective = first_objective + 1e-9 WHERE id = 5")
+    connection.commit()
     connection.close()
-    assert path.stat().st_size > 0
-    with pytest.raises(InputError, match="holds no run"):
-        open_run(path)
+    for opened in (lambda: open_run(path).designs([5]), lambda: RunStore(path)):
+        with pytest.raises(DamagedRunError, match="design 5 contradicts itself"):
+            opened()
+    assert open_run(path).design(4).id == 4, "what is sound can still be read"
+
+
+def test_9_a_kill_while_the_file_is_being_made_leaves_nothing_or_a_run(path: Path) -> None:
+    script = f"""
+import os, sys
+sys.path[:0] = [{str(Path(__file__).parent)!r}, {str(Path(__file__).parents[2])!r}]
+from pathlib import Path
+from test_runs_store import CASE
+from hpsop_core.runs import store
+store.create_tables = lambda connection: os.kill(os.getpid(), 9)
+store.RunStore(Path({str(path)!r}), CASE)
+"""
+    assert subprocess.run([sys.executable, "-c", script], check=False).returncode == -9
     store = RunStore(path, CASE)
     assert store.created
     store.close()
+
+
+def test_9_a_lost_log_is_noticed_and_nothing_begins_anew(path: Path, tmp_path: Path) -> None:
+    store = RunStore(path, CASE)
+    for number in range(1, 5):
+        asked = candidate(14.0 + number / 100)
+        store.record_evaluation(number, asked, 1, result(asked))
+    store.record_generation(generation(1, (1, 2, 3, 4)), 0.5)
+    asked = candidate(14.4)
+    store.record_evaluation(5, asked, 2, result(asked))
+    assert (tmp_path / "run.hpsop-wal").stat().st_size < 200_000, "one evaluation, and no more"
+    # The file alone, as a person copies it while it is written.
+    copy = tmp_path / "copy.hpsop"
+    copy.write_bytes(path.read_bytes())
+    run = open_run(copy)
+    assert run.progress() == (1, 4) and run.generation().members == (1, 2, 3, 4)
+    assert run.state()[0] == "interrupted" and "copy.hpsop-wal is lost" in run.state()[1]
+    assert open_run(path).progress() == (1, 5)
+    again = RunStore(copy)
+    again.close()
+    assert "opened without its copy.hpsop-wal" in open_run(copy).summary()["journal"][0]["text"]
+    assert open_run(copy).state()[0] == "interrupted" and "lost" not in open_run(copy).state()[1]
+    # The log alone, as a person leaves it who deletes the file; and the log of a file that was emptied.
+    log = tmp_path / "other.hpsop-wal"
+    log.write_bytes((tmp_path / "run.hpsop-wal").read_bytes())
+    other = tmp_path / "other.hpsop"
+    for make in (lambda: None, lambda: other.write_bytes(b"")):
+        make()
+        with pytest.raises(InputError, match=r"other.hpsop: is gone or empty, but other.hpsop-wal still holds"):
+            RunStore(other, CASE)
+        assert log.exists()
+    store.close()
+    # What an earlier version left of a running file that was copied alone: a database in WAL mode without content.
+    connection = sqlite3.connect(tmp_path / "empty.hpsop")
+    connection.execute("PRAGMA journal_mode = WAL")
+    connection.close()
+    with pytest.raises(InputError, match=r"copy its empty\.hpsop-wal too"):
+        open_run(tmp_path / "empty.hpsop")
+    with pytest.raises(InputError, match="a database without content"):
+        RunStore(tmp_path / "empty.hpsop", CASE)
+
+
+def test_4_a_link_is_the_same_file(path: Path, tmp_path: Path) -> None:
+    store = RunStore(path, CASE)
+    asked = candidate()
+    store.record_evaluation(1, asked, 1, result(asked))
+    soft, hard = tmp_path / "soft.hpsop", tmp_path / "sub" / "hard.hpsop"
+    hard.parent.mkdir()
+    soft.symlink_to(path)
+    with pytest.raises(InputError, match=f"written by process {os.getpid()}"):
+        RunStore(soft)
+    assert is_being_written(soft) and open_run(soft).progress() == (0, 1), "a reader by the link sees the log too"
+    os.link(path, hard)
+    with pytest.raises(InputError, match=r"has 2 names \(hard links\)"):
+        RunStore(hard)
+    store.close()
+    with pytest.raises(InputError, match="hard links"):
+        RunStore(path)
+    hard.unlink()
+    RunStore(soft).close()
+
+
+def test_6_a_file_that_was_cut_short_is_noticed(path: Path, tmp_path: Path) -> None:
+    store = RunStore(path, CASE)
+    asked = candidate()
+    store.record_evaluation(1, asked, 1, result(asked))
+    store.record_generation(generation(1, (1,)), 0.5)
+    run = open_run(path)
+    assert run.progress() == (1, 1)
+    os.truncate(path, 4096)
+    with pytest.raises(StoreUnwritableError, match="cut short by another program"):
+        store.note("lost?")
+    store.close()
+    with pytest.raises(InputError, match="cut short by another program"):
+        run.progress()
+
+
+def test_readers_notice_a_file_that_is_gone_or_another(path: Path, tmp_path: Path) -> None:
+    RunStore(path, CASE).close()
+    run = open_run(path)
+    path.rename(tmp_path / "moved.hpsop")
+    with pytest.raises(InputError, match=r"is gone .*deleted or renamed"):
+        run.state()
+    RunStore(path, CASE).close()
+    with pytest.raises(InputError, match="another file stands in its place"):
+        run.progress()
+    path.unlink()
+    (tmp_path / "moved.hpsop").rename(path)
+    assert run.progress() == (0, 0)
+
+
+def test_a_case_that_could_not_be_read_again_is_refused_before_it_is_stored(
+    path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    awkward = replace(CASE, title='bell \a, escape \x1b, return \r, nul \0, line \n, \u2028, """ and \\')
+    RunStore(path, awkward).close()
+    assert open_run(path).case == awkward
+    path.unlink()
+    other = CASE.to_toml()
+    monkeypatch.setattr(Case, "to_toml", lambda case: other)
+    with pytest.raises(InputError, match="would not be the same when it is read again"):
+        RunStore(path, awkward)
+    assert not path.exists()
 
 
 def test_the_case_comes_back_to_the_last_digit(path: Path) -> None:

@@ -1,0 +1,115 @@
+"""What stands in a run file, read through one connection, each record held against its checksum."""
+
+from __future__ import annotations
+
+import sqlite3
+import zlib
+from collections.abc import Iterator, Sequence
+from functools import cached_property
+from pathlib import Path
+from typing import Any
+
+from hpsop_core.runs.checksums import DamagedRunError, Tally, checked, checksum
+from hpsop_core.runs.packing import unpack
+from hpsop_core.runs.records import check_agreement
+from hpsop_core.runs.schema import CHECKSUMS_SINCE, COLUMNS, RUN_KEYS
+from hpsop_core.runs.ship import LARGEST_FILE, ShipFile
+
+
+class RunContent:
+    """The records of a run file. Errors of a damaged file come out as they are: see ``checksums.damage_told``.
+
+    Args:
+        connection: to the file; closed by its owner.
+        path: the file's name, for errors.
+        version: its schema.
+    """
+
+    def __init__(self, connection: sqlite3.Connection, path: Path, version: int) -> None:
+        self._connection = connection
+        self._path = path
+        self._sealed = version >= CHECKSUMS_SINCE
+
+    def values(self) -> dict[str, str]:
+        """The table ``run``.
+
+        Raises:
+            DamagedRunError: a key is missing or a value is not what was written.
+        """
+        values = {str(key): str(value) for key, value in self.rows("run")}
+        missing = [key for key in (*RUN_KEYS, *(("tally", "open") if self._sealed else ())) if key not in values]
+        if missing:
+            raise DamagedRunError(self._path, f"it has no '{missing[0]}'")
+        return values
+
+    def rows(self, table: str, condition: str = "", arguments: Sequence[Any] = ()) -> Iterator[tuple[Any, ...]]:
+        """Records of a table, with the columns of ``schema.COLUMNS``.
+
+        Args:
+            table: its name.
+            condition: SQL after the table's name ("WHERE ... ORDER BY ...").
+            arguments: of the condition.
+
+        Raises:
+            DamagedRunError: a record is not what was written.
+        """
+        names = ",".join((*COLUMNS[table], "checksum" if self._sealed else "NULL"))
+        for row in self._connection.execute(f"SELECT {names} FROM {table} {condition}", arguments):
+            yield checked(self._path, table, row)
+
+    def all_rows(self, table: str, order: str) -> list[tuple[Any, ...]]:
+        """Every record of a table by one of its columns; none may be missing.
+
+        Raises:
+            DamagedRunError: one is missing, one too many, or not what was written.
+        """
+        rows = list(self.rows(table, f"ORDER BY {order}"))
+        if self._sealed:
+            # Again, over what was read: an index that names a record twice gives good checksums.
+            self.tally.check(self._path, table, [checksum(table, row) for row in rows])
+        return rows
+
+    @cached_property
+    def tally(self) -> Tally:
+        """How many records there are; counted where an earlier version did not."""
+        if self._sealed:
+            return Tally.of_text(self.values()["tally"])
+        counts = {
+            table: int(self._connection.execute(f"SELECT count(*) FROM {table}").fetchone()[0])
+            for table in ("evaluations", "generations", "journal", "reference")
+        }
+        hand = "SELECT count(*) FROM evaluations WHERE origin = 'hand'"
+        return Tally({**counts, "hand": int(self._connection.execute(hand).fetchone()[0])})
+
+    @cached_property
+    def dictionary(self) -> bytes:
+        """What the evaluations are packed with; it is there when an evaluation is."""
+        return bytes.fromhex(self.values()["dictionary"])
+
+    def document(self, row: Sequence[Any]) -> dict[str, Any]:
+        """The JSON of an evaluation.
+
+        Raises:
+            DamagedRunError: it contradicts its row.
+        """
+        record = dict(zip(COLUMNS["evaluations"], row, strict=True))
+        document = unpack(record["result"], self.dictionary, record["variables"])
+        check_agreement(self._path, record, document)
+        return document
+
+    def files(self) -> tuple[ShipFile, ...]:
+        """The files of the case's own hull and propeller.
+
+        Raises:
+            DamagedRunError: the bytes are not those that were taken aboard.
+        """
+        if not self._sealed:
+            return ()
+        files = []
+        for section, field, name, sha256, content in self.all_rows("files", "section, field"):
+            unpacker = zlib.decompressobj()
+            file = ShipFile(section, field, name, unpacker.decompress(content, LARGEST_FILE + 1))
+            if not unpacker.eof or file.sha256 != sha256:
+                raise DamagedRunError(self._path, f"the file {name} that it holds is not the one that it was given")
+            files.append(file)
+        return tuple(files)
