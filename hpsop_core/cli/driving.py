@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import shutil
 import signal
 import threading
@@ -14,11 +15,14 @@ INTERRUPTED = 130
 
 
 def driven(controller: RunController, progress: Progress) -> bool:
-    """Drive to the end; False if a person (or the system, by SIGTERM) interrupted it."""
+    """Drive to the end; False if a person (or the system, by SIGTERM or SIGHUP) interrupted it."""
     if threading.current_thread() is threading.main_thread():
         # Also where a shell started us in the background, with the interrupt ignored.
         signal.signal(signal.SIGINT, _interrupt)
         signal.signal(signal.SIGTERM, _interrupt)
+        # The terminal was closed; with nohup it is ignored, and stays so.
+        if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
+            signal.signal(signal.SIGHUP, _interrupt)
     try:
         controller.start()
         while not controller.wait(0.2):
@@ -64,7 +68,7 @@ class Progress:
         """Print a line above the bar."""
         with self._guard:
             self._clear()
-            print(text, file=self._stream, flush=True)
+            self._print(text + "\n")
 
     def end(self) -> None:
         """Remove the bar."""
@@ -73,8 +77,14 @@ class Progress:
 
     def _clear(self) -> None:
         if self._width:
-            print("\r" + " " * self._width + "\r", end="", file=self._stream, flush=True)
+            self._print("\r" + " " * self._width + "\r")
             self._width = 0
+
+    def _print(self, text: str) -> None:
+        # A terminal that was closed, or a full disk under a log, must not end the run.
+        with contextlib.suppress(OSError, ValueError):
+            self._stream.write(text)
+            self._stream.flush()
 
     def _bar(self, snapshot: RunSnapshot) -> None:
         text = _progress_text(snapshot)
@@ -87,7 +97,7 @@ class Progress:
             text = "[" + "#" * filled + "." * (min(room, 40) - filled) + "] " + text
         text = text[:columns]
         with self._guard:
-            print("\r" + text.ljust(self._width), end="", file=self._stream, flush=True)
+            self._print("\r" + text.ljust(self._width))
             self._width = len(text)
 
 

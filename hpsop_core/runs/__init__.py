@@ -1,10 +1,12 @@
 """Runs: the file that never loses anything, the workers, and the controller that drives a run.
 
-A file for a thought: ``store`` (the file, as its writer sees it), ``reader`` (as everyone else does), ``schema``,
-``lock``, ``records``, ``packing`` (rows of few bytes); ``executor`` (where evaluations run), ``tasks`` (what a worker
-does), ``preload`` (what it has imported before it starts), ``batch`` (evaluating a generation on workers that may die);
-``replay`` (the loop, and why resuming is the same loop); ``control``, ``events`` and ``controller`` (a run in the hands
-of a person).
+A file for a thought. The run file: ``store`` (as its writer sees it), ``reader`` (as everyone else does), ``content``
+(its records), ``schema`` (its tables), ``migrations`` (from older tables), ``connections``, ``lock``, ``checksums``
+(damage is found), ``records``, ``packing`` (rows of few bytes), ``ship`` (an own hull's and propeller's files aboard).
+Where evaluations run: ``workers`` (what is asked of such a place), ``executor`` (local processes), ``dask_workers`` (a
+cluster), ``tasks`` (what a worker does), ``preload`` (what it has imported before it starts), ``batch`` (evaluating a
+generation on workers that may die). The run: ``replay`` (the loop, and why resuming is the same loop); ``control``,
+``events`` and ``controller`` (a run in the hands of a person).
 """
 
 from __future__ import annotations

@@ -13,13 +13,40 @@ from typing import Any
 from hpsop_core.case.case import Case
 from hpsop_core.optimization.problem import Candidate
 from hpsop_core.runs.control import RunControl
-from hpsop_core.runs.executor import Workers
-from hpsop_core.runs.tasks import EvaluateFunction, evaluation_task, failure_text
+from hpsop_core.runs.tasks import EvaluateFunction, WarmUpFunction, evaluation_task, failure_text, warm_up_task
+from hpsop_core.runs.workers import Workers, WorkersLostError
 
 _TICK = 0.1  # seconds between looks at the controls while evaluations run
 _STOP_GRACE = 3.0  # seconds that evaluations under way may still have when the run is stopped
+_STALL = 1.0  # seconds beyond a tick from which this program itself was stopped or starved
 _LAST_RESULTS = 5.0  # seconds to collect what else comes from a pool that broke
 _DEATHS_ALLOWED = 2
+_TIMEOUTS_ALLOWED = 2
+_RECONNECT_INTERVAL = 2.0  # seconds between tries to reach a cluster that does not answer
+
+
+def reconnect(workers: Workers, control: RunControl, lost: Callable[[str], None], reason: str) -> None:
+    """Wait until workers that were lost answer again, or the run is stopped.
+
+    Args:
+        workers: the lost ones.
+        control: of the run.
+        lost: told the reason, and "" when it is over.
+        reason: why they are lost.
+
+    Raises:
+        WorkersUnavailableError: others answer than can be used.
+    """
+    lost(reason)
+    while not control.stopped:
+        control.wait(_RECONNECT_INTERVAL)
+        try:
+            if not control.stopped:
+                workers.rebuild()
+            break
+        except WorkersLostError:
+            continue
+    lost("")
 
 
 @dataclass
@@ -28,6 +55,7 @@ class _Job:
     candidate: Candidate
     reference: Any
     deaths: int = 0
+    timeouts: int = 0
     alone: bool = False
     started: float = field(default=0.0)
 
@@ -37,19 +65,36 @@ class BatchEvaluator:
 
     An exception or a NaN is caught in the worker (``evaluation_task``). Here is caught what takes the worker along:
 
-    * Time-out: all workers are killed; the design is recorded as failed, what else was under way is queued again.
+    * Time-out: all workers are killed and started again, what else was under way is queued again. The design that was
+      late is evaluated once more, alone on a warm worker, and recorded as failed if it is late again. The time in which
+      this program itself stood still (Ctrl-Z, a sleeping machine, no processor to be had) does not count, nor what a
+      new worker needs to import and compile.
     * A dead worker (out of memory, a crash in compiled code): every design under way is a suspect, and suspects are
       evaluated again one at a time, so the guilty one is known for certain: if its worker dies then too, it is
       recorded as failed. So the result does not depend on the number of workers.
+    * A cluster that does not answer any more: the run is paused with the reason, and goes on when it answers again.
 
     Args:
         workers: where to evaluate.
         evaluate: the evaluation.
         case: what is optimised.
         control: asked between evaluations.
+        lost: called with the reason when the workers cannot be reached any more, and with "" when they can.
+        warm_up: called once in each new worker, as ``Physics.warm_up``.
     """
 
-    def __init__(self, workers: Workers, evaluate: EvaluateFunction, case: Case, control: RunControl) -> None:
+    def __init__(
+        self,
+        workers: Workers,
+        evaluate: EvaluateFunction,
+        case: Case,
+        control: RunControl,
+        lost: Callable[[str], None] = lambda reason: None,
+        warm_up: WarmUpFunction | None = None,
+    ) -> None:
+        self._lost = lost
+        self._warm_up = warm_up
+        self._looked = time.monotonic()
         self._workers = workers
         self._evaluate = evaluate
         self._case = case
@@ -82,6 +127,7 @@ class BatchEvaluator:
         self._queue = deque(_Job(number, candidate, reference) for number, candidate, reference in tasks)
         self._suspects = deque()
         self._under_way = {}
+        self._looked = time.monotonic()
         try:
             while self._queue or self._suspects or self._under_way:
                 if self._control.stopped:
@@ -92,9 +138,13 @@ class BatchEvaluator:
                     self._control.wait_while_paused()
                     paused(False)
                     continue
-                if not self._control.paused:
-                    self._submit()
-                self._collect(finished)
+                try:
+                    if not self._control.paused:
+                        self._submit()
+                    self._collect(finished)
+                except WorkersLostError as error:
+                    self._requeue()
+                    reconnect(self._workers, self._control, self._lost, str(error))
         except BaseException:
             # A full disk that the user gave up on, Ctrl-C: nothing may go on computing behind the run's back.
             self._abandon()
@@ -116,22 +166,31 @@ class BatchEvaluator:
 
     def _start(self, job: _Job) -> bool:
         candidate = job.candidate
+        if self._warm_up is not None:
+            # Before its clock runs: a worker that was just started has yet to load, and maybe to compile, the solvers.
+            self._workers.warm(
+                candidate.level, self._control, warm_up_task, self._warm_up, self._case, candidate.level, job.reference
+            )
         arguments = (self._evaluate, self._case, candidate.variables, candidate.level, job.reference)
         try:
             future = self._workers.submit(evaluation_task, *arguments)
         except BrokenExecutor:
             # A worker died while it was idle: nobody here is to blame.
-            self._queue.appendleft(job)
+            (self._suspects if job.deaths or job.timeouts else self._queue).appendleft(job)
             self._requeue()
             self._workers.rebuild()
             return False
         job.started = time.monotonic()
+        if not self._under_way:
+            self._looked = job.started
         self._under_way[future] = job
         return True
 
     def _requeue(self) -> None:
         jobs = sorted(self._under_way.values(), key=lambda job: job.number)
-        self._queue.extendleft(reversed(jobs))
+        # A suspect stays one.
+        self._suspects.extendleft(reversed([job for job in jobs if job.deaths or job.timeouts]))
+        self._queue.extendleft(reversed([job for job in jobs if not (job.deaths or job.timeouts)]))
         self._under_way = {}
 
     def _collect(self, finished: Callable[[int, Candidate, str], None]) -> None:
@@ -139,20 +198,39 @@ class BatchEvaluator:
             return
         concurrent.futures.wait(self._under_way, timeout=_TICK, return_when=concurrent.futures.FIRST_COMPLETED)
         if self._take_finished(finished):
+            if not self._workers.blamable:
+                self._requeue()
+                self._workers.rebuild()
+                return
             # Others of the broken pool may have finished; what has not is a suspect.
             concurrent.futures.wait(self._under_way, timeout=_LAST_RESULTS)
             self._take_finished(finished)
             self._blame(finished)
             return
+        self._allow_for_stalls()
         now = time.monotonic()
         late = [future for future, job in self._under_way.items() if now - job.started > self._limit]
         late = [future for future in late if not future.done()]
         if late:
             for future in late:
-                reason = f"took longer than the limit of {self._limit:g} s"
-                self._fail(self._under_way.pop(future), "time-out", reason, finished)
+                job = self._under_way.pop(future)
+                job.timeouts += 1
+                if job.timeouts >= _TIMEOUTS_ALLOWED:
+                    reason = f"took longer than the limit of {self._limit:g} s, twice"
+                    self._fail(job, "time-out", reason, finished)
+                else:
+                    self._suspects.append(job)
             self._requeue()
             self._workers.rebuild()
+
+    def _allow_for_stalls(self) -> None:
+        """What stopped this loop stopped the workers too, or may have: it is no fault of theirs."""
+        now = time.monotonic()
+        stalled = now - self._looked - _TICK
+        self._looked = now
+        if stalled > _STALL:
+            for job in self._under_way.values():
+                job.started += stalled
 
     def _take_finished(self, finished: Callable[[int, Candidate, str], None]) -> bool:
         """Hand out results; True if a worker died."""
@@ -166,6 +244,8 @@ class BatchEvaluator:
             if isinstance(error, (BrokenExecutor, CancelledError)):
                 broken = True
                 continue
+            if isinstance(error, WorkersLostError):
+                raise error
             job = self._under_way.pop(future)
             if error is None:
                 finished(job.number, job.candidate, future.result())

@@ -1,4 +1,4 @@
-"""Where evaluations run: local processes or a Dask cluster, each through a ``concurrent.futures.Executor``."""
+"""Where evaluations run: processes of this machine, through a ``concurrent.futures.Executor``."""
 
 from __future__ import annotations
 
@@ -12,49 +12,20 @@ import os
 import signal
 import time
 from collections.abc import Callable, Iterator
-from concurrent.futures import Executor, Future, ProcessPoolExecutor
-from typing import Any, Protocol
+from concurrent.futures import Future, ProcessPoolExecutor
+from typing import Any
 
 from hpsop_core.errors import InputError
-from hpsop_core.runs.tasks import start_worker, warm_up_task
+from hpsop_core.runs.control import RunControl
+from hpsop_core.runs.tasks import presence_task, start_worker
+from hpsop_core.runs.workers import Workers, WorkersUnavailableError
 
 _START_LIMIT = 120.0  # seconds for all workers of a pool to import what they need
+_STARTS_TRIED = 3
+_WARM_LIMIT = 600.0  # seconds for all workers to compile what they need, and evaluate the initial design
+_TICK = 0.1  # seconds between looks at the controls
 _MOST_WORKERS_PER_CORE = 16  # each holds some 200 MB; more than one a core gains nothing
-_CLUSTER_INTERVAL = 2.0  # seconds between looks at how many threads a cluster has
 _THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
-
-
-class WorkersUnavailableError(InputError):
-    """No worker can be had: processes cannot start, or the cluster that was named does not answer."""
-
-
-class Workers(Protocol):
-    """An executor that can be thrown away and made anew."""
-
-    @property
-    def slots(self) -> int:
-        """Evaluations that really run side by side; no more are ever submitted, so each starts at once."""
-
-    @property
-    def description(self) -> str:
-        """For people."""
-
-    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
-        """Start a call.
-
-        Raises:
-            concurrent.futures.BrokenExecutor: a worker died while it was idle; call ``rebuild``.
-        """
-
-    def rebuild(self) -> None:
-        """Kill whatever runs and start again.
-
-        Raises:
-            WorkersUnavailableError: no new workers can be had.
-        """
-
-    def close(self) -> None:
-        """Leave no process behind."""
 
 
 def default_workers() -> int:
@@ -79,7 +50,10 @@ class LocalWorkers:
         self._count = count
         self._pool: ProcessPoolExecutor | None = None
         self._processes: set[int] = set()
+        self._warm: set[int] = set()
+        self._started = False
         self._start()
+        self._started = True
 
     @property
     def slots(self) -> int:
@@ -90,6 +64,16 @@ class LocalWorkers:
     def description(self) -> str:
         """For people."""
         return f"{self._count} local process" + ("es" if self._count > 1 else "")
+
+    @property
+    def blamable(self) -> bool:
+        """A process that died was computing one of the designs under way."""
+        return True
+
+    @property
+    def versions(self) -> dict[str, dict[str, str]]:
+        """None but this program's."""
+        return {}
 
     @staticmethod
     def prepare() -> str:
@@ -108,18 +92,55 @@ class LocalWorkers:
         return "forkserver"
 
     def _start(self) -> None:
-        context = multiprocessing.get_context(self.prepare())
-        self._pool = ProcessPoolExecutor(self._count, context, initializer=start_worker)
-        try:
-            with _one_thread_environment():
-                probes = [self._pool.submit(warm_up_task, 0.02) for _ in range(self._count)]
-            self._processes = {probe.result(timeout=_START_LIMIT) for probe in probes}
-        except (concurrent.futures.BrokenExecutor, concurrent.futures.TimeoutError, EOFError, OSError) as error:
-            self.close()
+        # Workers that were there before may fail to come back because somebody killed the fork server: it is started
+        # again. The first time it is the script that is to blame, and trying again would only try it again.
+        for attempt in range(_STARTS_TRIED if self._started else 1):
+            if attempt:
+                time.sleep(0.5 * attempt)
+            try:
+                self._start_pool()
+                return
+            except (concurrent.futures.BrokenExecutor, concurrent.futures.TimeoutError, EOFError, OSError) as error:
+                self.close()
+                reason = error
+        if self._started:
             raise WorkersUnavailableError(
-                "worker processes do not start; a script that calls optimize() must do so below "
-                "'if __name__ == \"__main__\":'"
-            ) from error
+                f"worker processes cannot be started again ({type(reason).__name__}): is there memory, and room for "
+                "processes? What is finished is kept; go on later"
+            ) from reason
+        raise WorkersUnavailableError(
+            "worker processes do not start; a script that calls optimize() must do so below "
+            "'if __name__ == \"__main__\":'"
+        ) from reason
+
+    def _start_pool(self) -> None:
+        context = multiprocessing.get_context(self.prepare())
+        self._warm = set()
+        self._pool = ProcessPoolExecutor(self._count, context, initializer=start_worker)
+        with _one_thread_environment():
+            probes = [self._pool.submit(presence_task, 0.02) for _ in range(self._count)]
+        self._processes = {probe.result(timeout=_START_LIMIT) for probe in probes}
+
+    def warm(self, level: int, control: RunControl, task: Callable[..., None], *arguments: Any) -> None:
+        """Call once in each process; a process that dies of it is replaced."""
+        if level in self._warm:
+            return
+        # Nothing may be under way: the calls would wait behind it.
+        for _ in range(_STARTS_TRIED):
+            try:
+                calls = [self.submit(task, *arguments) for _ in range(self._count)]
+                give_up = time.monotonic() + _WARM_LIMIT
+                while concurrent.futures.wait(calls, timeout=_TICK).not_done and not control.stopped:
+                    if time.monotonic() > give_up:
+                        self.rebuild()
+                        break
+                for call in calls:
+                    if call.done() and not call.cancelled():
+                        call.result()
+                break
+            except concurrent.futures.BrokenExecutor:
+                self.rebuild()
+        self._warm.add(level)
 
     def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
         """Start a call in a worker."""
@@ -148,70 +169,6 @@ class LocalWorkers:
     def close(self) -> None:
         """Kill every worker; doing so twice does nothing."""
         self._kill()
-
-
-class DaskWorkers:
-    """The workers of a Dask scheduler, by ``Client.get_executor()``.
-
-    Args:
-        address: "HOST:PORT" of the scheduler.
-
-    Raises:
-        WorkersUnavailableError: the scheduler does not answer, or has no workers.
-    """
-
-    def __init__(self, address: str) -> None:
-        import distributed  # an optional dependency, and slow to import
-
-        client: Any = distributed.Client
-        self._address = address
-        target = address if "://" in address else f"tcp://{address}"
-        try:
-            self._client: Any = client(target, timeout=5, set_as_default=False)
-            self._client.wait_for_workers(1, timeout=30)
-        except (OSError, TimeoutError, ValueError) as error:
-            raise WorkersUnavailableError(
-                f"--executor dask:{address}: no scheduler with workers answers there "
-                f"({error or type(error).__name__}); start 'dask scheduler' and 'dask worker'"
-            ) from error
-        self._asked, self._threads = float("-inf"), 1
-        # A task that kills its worker is not tried on every worker in turn: the run decides about a second try.
-        self._executor: Executor = self._client.get_executor(retries=0)
-
-    @property
-    def slots(self) -> int:
-        """Threads of all workers; they may come and go."""
-        now = time.monotonic()
-        if now - self._asked > _CLUSTER_INTERVAL:
-            self._asked = now
-            self._threads = max(1, int(sum(self._client.nthreads().values())))
-        return self._threads
-
-    @property
-    def description(self) -> str:
-        """For people."""
-        return f"Dask at {self._address}, {self.slots} threads"
-
-    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
-        """Start a call on the cluster."""
-        try:
-            return self._executor.submit(function, *arguments)
-        except Exception as error:
-            raise concurrent.futures.BrokenExecutor(f"Dask at {self._address}: {error}") from error
-
-    def rebuild(self) -> None:
-        """Restart the scheduler's workers: a hanging call cannot be stopped otherwise. Use a scheduler of your own."""
-        try:
-            self._client.restart(timeout=30)
-            self._client.wait_for_workers(1, timeout=30)
-        except Exception as error:
-            raise WorkersUnavailableError(f"Dask at {self._address} does not answer: {error}") from error
-        self._executor = self._client.get_executor(retries=0)
-
-    def close(self) -> None:
-        """Leave the cluster; what still runs there is cancelled."""
-        self._executor.shutdown(wait=False)
-        self._client.close(timeout=5)
 
 
 def checked_executor(executor: str, count: int | None) -> str:
@@ -251,6 +208,8 @@ def make_workers(executor: str, count: int | None) -> Workers:
     """
     address = checked_executor(executor, count)
     if address:
+        from hpsop_core.runs.dask_workers import DaskWorkers  # an optional dependency
+
         return DaskWorkers(address)
     return LocalWorkers(default_workers() if count is None else count)
 
@@ -273,7 +232,7 @@ def _one_thread_environment() -> Iterator[None]:
 def _signals_blocked() -> Iterator[None]:
     # A process inherits the mask: Ctrl-C in a terminal, or a service manager's SIGTERM to all, shall not tear the fork
     # server away from under the run that is just being stopped in good order.
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM, signal.SIGHUP})
     try:
         yield
     finally:

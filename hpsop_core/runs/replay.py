@@ -19,17 +19,18 @@ from hpsop_core.evaluation.levels import FAST, LEVELS, TRUTH, level_of
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.problem import Candidate, Outcome
 from hpsop_core.optimization.two_level import TwoLevelSearch
-from hpsop_core.runs.batch import BatchEvaluator
+from hpsop_core.runs.batch import BatchEvaluator, reconnect
 from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.events import RunEvent, RunSnapshot, State
-from hpsop_core.runs.executor import Workers, WorkersUnavailableError
 from hpsop_core.runs.records import variables_text
 from hpsop_core.runs.schema import FIRST_SEARCH_ID, initial_id, software_versions
 from hpsop_core.runs.store import RunStore, StoreUnwritableError
 from hpsop_core.runs.tasks import Physics, failure_text, reference_task
+from hpsop_core.runs.workers import Workers, WorkersLostError, WorkersUnavailableError
 
 _EVENT_INTERVAL = 0.1  # seconds between events about progress within a generation
 _RETRY_INTERVAL = 1.0  # seconds between tries to write to a full disk
+_REFERENCE_TRIES = 3
 _RECENT = 10  # generations that the estimate of the time left looks back on
 _LEVEL2_SECONDS = 0.3  # an evaluation at level 2, until one is measured: the initial design's finds its hull remembered
 
@@ -70,6 +71,7 @@ class RunDriver:
         self._numbered: dict[tuple[int, str], int] = {}
         self._next_number = FIRST_SEARCH_ID
         self._references: dict[int, Any] = {}
+        self._noted: set[str] = set()
         self._last_event = 0.0
         self._level2_seconds: float | None = None
         self.snapshot = RunSnapshot()
@@ -263,10 +265,35 @@ class RunDriver:
             self._change_state("paused" if now else "running", "")
 
         tasks = [(number, candidate, self._reference(candidate.level)) for number, candidate in missing]
-        evaluator = BatchEvaluator(self._ready_workers(), self._physics.evaluate, self._case, self._control)
+
+        def lost(reason: str) -> None:
+            nonlocal waited
+            waited += -time.monotonic() if reason else time.monotonic()
+            self._lost(reason)
+
+        workers = self._ready_workers()
+        evaluator = BatchEvaluator(
+            workers, self._physics.evaluate, self._case, self._control, lost, self._physics.warm_up
+        )
         if not evaluator.run(tasks, finished, paused):
             raise _StoppedError
+        self._note_workers(workers)
         return waited
+
+    def _lost(self, reason: str) -> None:
+        """The workers cannot be reached, and "" when they can again."""
+        text = f"{reason}; the run goes on when it does, or stop it" if reason else ""
+        self._change_state("paused" if reason else "running", text)
+
+    def _note_workers(self, workers: Workers) -> None:
+        """In the journal: with which versions other machines computed."""
+        fresh = {name: versions for name, versions in workers.versions.items() if name not in self._noted}
+        if fresh:
+            self._noted.update(fresh)
+            text = (
+                f"evaluated by {len(fresh)} workers of {workers.description}: {json.dumps(next(iter(fresh.values())))}"
+            )
+            self._keep(lambda: self._store.note(text))
 
     def _record(self, number: int, candidate: Candidate, generation: int, result: str) -> float:
         started = time.monotonic()
@@ -333,19 +360,29 @@ class RunDriver:
 
     def _computed_reference(self, level: int) -> str:
         """Computed by a worker like everything else: with one BLAS thread, and a crash there is not ours."""
-        workers = self._ready_workers()
-        reason = "its worker process died"
-        try:
-            future = workers.submit(reference_task, self._physics.reference_for, self._case, level)
-            while not concurrent.futures.wait([future], timeout=_EVENT_INTERVAL).done:
+        reason = "its worker processes died"
+        for _ in range(_REFERENCE_TRIES):
+            workers = self._ready_workers()
+            try:
+                future = workers.submit(reference_task, self._physics.reference_for, self._case, level)
+                while not concurrent.futures.wait([future], timeout=_EVENT_INTERVAL).done:
+                    if self._control.stopped:
+                        raise _StoppedError
+                done, text = future.result()
+                if done:
+                    return str(text)
+                reason = str(text)
+                break
+            except (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError):
+                # Killed by the system, maybe, and not by the design: the same again decides.
                 if self._control.stopped:
-                    raise _StoppedError
-            done, text = future.result()
-            if done:
-                return str(text)
-            reason = str(text)
-        except concurrent.futures.BrokenExecutor:
-            workers.rebuild()
+                    raise _StoppedError from None
+                if workers.blamable:
+                    workers.rebuild()
+                else:
+                    reconnect(workers, self._control, self._lost, f"{workers.description} does not answer")
+            except WorkersLostError as error:
+                reconnect(workers, self._control, self._lost, str(error))
         raise InputError(
             f"{self._case.name}: the initial design cannot be computed at level {level} ({reason}); change [initial]"
         )

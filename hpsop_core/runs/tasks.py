@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import ctypes
 import math
 import os
@@ -28,6 +29,9 @@ EvaluateFunction: TypeAlias = Callable[[Case, DesignVariables, int, Any], Evalua
 ReferenceFunction: TypeAlias = Callable[[Case, int], Any]
 """(case, level) -> a reference with ``as_dict``, or None for an evaluation that needs none; picklable."""
 
+WarmUpFunction: TypeAlias = Callable[[Case, int, Any], None]
+"""(case, level, reference): whatever makes the first evaluation as quick as the others; picklable."""
+
 _NICENESS = 5
 _PR_SET_PDEATHSIG = 1
 _threads_pinned = False
@@ -41,11 +45,13 @@ class Physics:
         evaluate: the evaluation.
         reference_for: what normalises at a level.
         reference_from_dict: makes a reference from its ``as_dict``.
+        warm_up: called once in each new worker and level, before evaluations are timed; None if there is no need.
     """
 
     evaluate: EvaluateFunction
     reference_for: ReferenceFunction
     reference_from_dict: Callable[[Mapping[str, Any]], Any]
+    warm_up: WarmUpFunction | None = None
 
 
 def hydrodynamics() -> Physics:
@@ -54,7 +60,13 @@ def hydrodynamics() -> Physics:
     from hpsop_core.evaluation.evaluate import evaluate
     from hpsop_core.evaluation.reference import Reference, reference_for
 
-    return Physics(evaluate, reference_for, Reference.from_dict)
+    return Physics(evaluate, reference_for, Reference.from_dict, _evaluate_initial)
+
+
+def _evaluate_initial(case: Case, level: int, reference: Any) -> None:
+    from hpsop_core.evaluation.evaluate import evaluate
+
+    evaluate(case, case.initial.variables, level, reference)
 
 
 def evaluation_task(
@@ -96,11 +108,21 @@ def reference_task(reference_for: ReferenceFunction, case: Case, level: int) -> 
         return False, _one_line(error)
 
 
-def warm_up_task(seconds: float) -> int:
+def presence_task(seconds: float) -> int:
     """Occupy a worker for a moment, so that the pool starts all of them; returns the process id."""
     pin_threads()
     time.sleep(seconds)
     return os.getpid()
+
+
+def warm_up_task(warm_up: WarmUpFunction, case: Case, level: int, reference: Any) -> None:
+    """Make this process ready; what fails here is found again, and told, by the evaluation itself."""
+    pin_threads()
+    started = time.perf_counter()
+    with contextlib.suppress(Exception):
+        warm_up(case, level, reference)
+    # Long enough that no worker takes two of these and leaves another one cold.
+    time.sleep(max(0.0, 0.05 - (time.perf_counter() - started)))
 
 
 def _one_line(error: BaseException) -> str:
@@ -146,6 +168,7 @@ def start_worker() -> None:
     """What a local worker process does first: obey its parent alone, and never outlive it."""
     # Ctrl-C in a terminal reaches every process of the group; the parent decides what it means.
     signal.signal(signal.SIGINT, signal.SIG_IGN)
+    signal.signal(signal.SIGHUP, signal.SIG_IGN)  # as Ctrl-C: a terminal that is closed tells the whole group
     signal.pthread_sigmask(signal.SIG_UNBLOCK, {signal.SIGTERM})  # blocked in the fork server, and so in its children
     _die_with_parent()
     os.nice(_NICENESS)  # the page and the desktop stay smooth while every core computes

@@ -12,7 +12,7 @@ from pathlib import Path
 
 import pytest
 from quick_physics import counting, evaluate, marking, physics
-from run_files import content, count_finished, descendants, finished_designs, is_alive, small_case, wait_until
+from run_files import content, count_finished, descendants, finished_designs, forge, is_alive, small_case, wait_until
 
 from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import optimize
@@ -137,18 +137,15 @@ def test_finished_and_extended_runs_are_started_again_with_the_same_command(tmp_
 
 
 def test_a_file_that_does_not_replay_is_refused_with_the_versions(tmp_path: Path) -> None:
-    import sqlite3
-
     path = tmp_path / "run.hpsop"
     case = small_case(generations=3, level1_generations=3)
     optimize(case, path, workers=1, physics=physics(evaluate))
-    connection = sqlite3.connect(path)
-    connection.execute("""UPDATE run SET value = replace(value, '"pymoo":"', '"pymoo":"0.1-') WHERE key = 'versions'""")
-    connection.execute("DROP TRIGGER generations_stay")
-    connection.execute("UPDATE generations SET data = replace(data, '\"number\":2', '\"number\":9') WHERE number = 2")
-    connection.commit()
-    connection.close()
-    with pytest.raises(InputError, match=r"generation 9.*made with pymoo 0\.1"):
+    forge(
+        path,
+        """UPDATE run SET value = replace(value, '"pymoo":"', '"pymoo":"0.1-') WHERE key = 'versions'""",
+        "UPDATE generations SET data = replace(data, '\"spread\":', '\"spread\":1') WHERE number = 2",
+    )
+    with pytest.raises(InputError, match=r"generation 2 comes out.*made with pymoo 0\.1"):
         optimize(case, path, generations=4, workers=1, physics=physics(evaluate))
     assert open_run(path).state()[0] == "failed"
 
