@@ -109,8 +109,14 @@ class Tally:
 
 
 @contextlib.contextmanager
-def damage_told(path: Path) -> Iterator[None]:
+def damage_told(
+    path: Path, cannot: str = "be read as a run file", remedy: str = "choose another file"
+) -> Iterator[None]:
     """Whatever goes wrong with a file's content becomes one line for people.
+
+    Args:
+        path: of the file.
+        cannot, remedy: what SQLite's own errors hinder, and what to do.
 
     Raises:
         InputError: not a database, or one that cannot be read just now.
@@ -121,12 +127,16 @@ def damage_told(path: Path) -> Iterator[None]:
     except HpsopError:
         raise
     except sqlite3.Error as error:
-        raise InputError(f"{path}: cannot be read as a run file ({error}); choose another file") from error
+        # Of a text that is none it quotes all.
+        raise InputError(f"{path}: cannot {cannot} ({_one_line(error)}); {remedy}") from error
     except MemoryError as error:
         raise DamagedRunError(path, "a record is larger than any can be") from error
     except RecursionError as error:
         raise DamagedRunError(path, "a record is nested deeper than any can be") from error
     except (ArithmeticError, AttributeError, LookupError, TypeError, ValueError, struct.error, zlib.error) as error:
         # ValueError: also of JSON and of texts that are no UTF-8
-        text = " ".join(str(error).split())[:100]
-        raise DamagedRunError(path, f"{type(error).__name__}: {text}") from error
+        raise DamagedRunError(path, f"{type(error).__name__}: {_one_line(error)}") from error
+
+
+def _one_line(error: BaseException) -> str:
+    return " ".join(str(error).split())[:100]

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import sqlite3
 import zlib
 from collections.abc import Iterator, Sequence
@@ -57,16 +58,28 @@ class RunContent:
         for row in self._connection.execute(f"SELECT {names} FROM {table} {condition}", arguments):
             yield checked(self._path, table, row)
 
-    def all_rows(self, table: str, order: str) -> list[tuple[Any, ...]]:
-        """Every record of a table by one of its columns; none may be missing.
+    def all_rows(self, table: str) -> list[tuple[Any, ...]]:
+        """Every record of a table, ascending in its first column; none may be missing.
 
         Raises:
             DamagedRunError: one is missing, one too many, or not what was written.
         """
-        rows = list(self.rows(table, f"ORDER BY {order}"))
+        rows = self.sorted_rows(table)
         if self._sealed:
-            # Again, over what was read: an index that names a record twice gives good checksums.
+            # Again, over what was read: a tree that holds a record twice gives good checksums.
             self.tally.check(self._path, table, [checksum(table, row) for row in rows])
+        return rows
+
+    def sorted_rows(self, table: str, condition: str = "", arguments: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
+        """As ``rows``, ascending in the table's first column.
+
+        Raises:
+            DamagedRunError: they are not, though SQLite was asked for it: the file's tree is not in order.
+        """
+        order = COLUMNS[table][0]
+        rows = list(self.rows(table, f"{condition} ORDER BY {order}", arguments))
+        if any(not one[0] <= two[0] for one, two in itertools.pairwise(rows)):
+            raise DamagedRunError(self._path, f"its table '{table}' is not in order")
         return rows
 
     @cached_property
@@ -106,7 +119,7 @@ class RunContent:
         if not self._sealed:
             return ()
         files = []
-        for section, field, name, sha256, content in self.all_rows("files", "section, field"):
+        for section, field, name, sha256, content in self.all_rows("files"):
             unpacker = zlib.decompressobj()
             file = ShipFile(section, field, name, unpacker.decompress(content, LARGEST_FILE + 1))
             if not unpacker.eof or file.sha256 != sha256:

@@ -12,8 +12,6 @@ from pathlib import Path
 from typing import TYPE_CHECKING
 
 from hpsop_core.case.case import Case
-from hpsop_core.case.fields import rules
-from hpsop_core.case.sections import OptimizationSection
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation.result import Evaluation
@@ -21,6 +19,7 @@ from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.events import RunEvent, RunSnapshot
 from hpsop_core.runs.executor import LocalWorkers, checked_executor, make_workers
 from hpsop_core.runs.reader import RunReader, open_run
+from hpsop_core.runs.records import MOST_GENERATIONS
 from hpsop_core.runs.ship import is_same_ship
 from hpsop_core.runs.store import RunStore
 from hpsop_core.runs.tasks import Physics, hydrodynamics
@@ -125,10 +124,9 @@ class RunController:
         Raises:
             InputError: it would.
         """
-        most = int(rules(OptimizationSection)["generations"].upper)
-        if total > most:
+        if total > MOST_GENERATIONS:
             raise InputError(
-                f"{self.path}: {total} generations in total are more than {most}, the most that a run may have; "
+                f"{self.path}: {total} generations in total are more than {MOST_GENERATIONS}, the most of a run; "
                 "start a new run from its front (--seeds-from)"
             )
 

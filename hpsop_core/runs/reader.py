@@ -26,6 +26,7 @@ from hpsop_core.runs.records import (
     Failure,
     GenerationRecord,
     generation_from_text,
+    generations_asked,
     named_variables,
 )
 from hpsop_core.runs.schema import COLUMNS, FIRST_SEARCH_ID, HAND_IDS_BEGIN, schema_version
@@ -113,7 +114,8 @@ class RunReader:
     @property
     def seeds(self) -> tuple[DesignVariables, ...]:
         """Designs that the run was started from."""
-        return tuple(DesignVariables.from_dict(seed) for seed in json.loads(self._values["seeds"]))
+        with damage_told(self.path):
+            return tuple(DesignVariables.from_dict(seed) for seed in json.loads(self._values["seeds"]))
 
     def state(self) -> tuple[str, str]:
         """(state, reason): as ``events.State``, or "interrupted" for a run whose process was killed."""
@@ -144,15 +146,24 @@ class RunReader:
     def generations_asked(self) -> int:
         """Generations asked for in total, extensions included: a cheap look."""
         with self._reading() as content:
-            return int(content.values()["generations"])
+            return generations_asked(content.values())
 
     def summary(self) -> dict[str, Any]:
         """The run in numbers, ready for JSON."""
         with self._reading() as content:
             values = content.values()
-            rows = [_record("evaluations", row) for row in content.all_rows("evaluations", "id")]
-            generations = [_record("generations", row) for row in content.all_rows("generations", "number")]
-            journal = [_record("journal", row) for row in content.all_rows("journal", "id")]
+            rows = [_record("evaluations", row) for row in content.all_rows("evaluations")]
+            generations = [_record("generations", row) for row in content.all_rows("generations")]
+            journal = [_record("journal", row) for row in content.all_rows("journal")]
+            return self._summary(values, rows, generations, journal)
+
+    def _summary(
+        self,
+        values: Mapping[str, str],
+        rows: Sequence[Mapping[str, Any]],
+        generations: Sequence[Mapping[str, Any]],
+        journal: Sequence[Mapping[str, Any]],
+    ) -> dict[str, Any]:
         searched = [row for row in rows if row["origin"] != "hand"]
         levels = sorted({row["level"] for row in searched})
         state, reason = self._state(values)
@@ -164,7 +175,7 @@ class RunReader:
             "state": state,
             "reason": reason,
             "generation": 0 if last is None else last.number,
-            "generations": int(values["generations"]),
+            "generations": generations_asked(values),
             "level1_generations": settings.level1_generations,
             "level": None if last is None else last.level,
             "population": settings.population,
@@ -213,7 +224,7 @@ class RunReader:
         while known + 1 in self._generations:
             known += 1
         with self._reading() as content:
-            for row in content.rows("generations", "WHERE number > ? ORDER BY number", (known,)):
+            for row in content.sorted_rows("generations", "WHERE number > ?", (known,)):
                 number, level, data, elapsed, finished_at = row
                 generation = generation_from_text(data)
                 if (generation.number, generation.level) != (number, level):
@@ -327,25 +338,37 @@ class RunReader:
             by_hand: designs made by hand instead of the search's.
         """
         with self._reading() as content:
-            if after:
-                rows = list(content.rows("evaluations", "WHERE id > ? ORDER BY id", (after,)))
+            if by_hand:
+                rows = content.sorted_rows("evaluations", "WHERE id > ?", (max(after, HAND_IDS_BEGIN - 1),))
+                if after < HAND_IDS_BEGIN and len(rows) != content.tally.counts.get("hand", 0):
+                    raise DamagedRunError(self.path, "a design made by hand is missing")
+            elif after:
+                rows = content.sorted_rows("evaluations", "WHERE id > ? AND id < ?", (after, HAND_IDS_BEGIN))
+                self._check_none_missing(after, [row[0] for row in rows])
             else:
-                rows = content.all_rows("evaluations", "id")
-        records = [_record("evaluations", row) for row in rows]
-        return tuple(
-            ArchivePoint(
-                id=record["id"],
-                level=record["level"],
-                origin=record["origin"],
-                generation=record["generation"],
-                objectives=(record["first_objective"], record["second_objective"])
-                if record["status"] == "ok"
-                else None,
-                feasible=bool(record["feasible"]),
+                rows = content.all_rows("evaluations")
+            records = [_record("evaluations", row) for row in rows]
+            return tuple(
+                ArchivePoint(
+                    id=record["id"],
+                    level=record["level"],
+                    origin=record["origin"],
+                    generation=record["generation"],
+                    objectives=(record["first_objective"], record["second_objective"])
+                    if record["status"] == "ok"
+                    else None,
+                    feasible=bool(record["feasible"]),
+                )
+                for record in records
+                if (record["origin"] == "hand") == by_hand and level in (None, record["level"])
             )
-            for record in records
-            if (record["origin"] == "hand") == by_hand and level in (None, record["level"])
-        )
+
+    def _check_none_missing(self, after: int, ids: Sequence[int]) -> None:
+        """The designs of finished generations are all there: after the initial design's, ids of the search leave no gap."""
+        last = max((max(record.generation.asked) for record in self._generations.values()), default=0)
+        first = max(after + 1, FIRST_SEARCH_ID)
+        if sum(first <= number <= last for number in ids) != max(0, last + 1 - first):
+            raise DamagedRunError(self.path, "a design of a finished generation is missing")
 
     def by_hand(self) -> tuple[DesignRecord, ...]:
         """Designs made by hand, in the order made."""
@@ -354,27 +377,28 @@ class RunReader:
     def failures(self) -> tuple[Failure, ...]:
         """Failed evaluations, in the order asked."""
         with self._reading() as content:
-            records = [_record("evaluations", row) for row in content.all_rows("evaluations", "id")]
-        return tuple(
-            Failure(
-                id=record["id"],
-                level=record["level"],
-                generation=record["generation"],
-                stage=record["stage"],
-                reason=record["reason"],
-                variables=DesignVariables.from_dict(named_variables(record["variables"])),
-                elapsed=record["elapsed"],
+            records = [_record("evaluations", row) for row in content.all_rows("evaluations")]
+            return tuple(
+                Failure(
+                    id=record["id"],
+                    level=record["level"],
+                    generation=record["generation"],
+                    stage=record["stage"],
+                    reason=record["reason"],
+                    variables=DesignVariables.from_dict(named_variables(record["variables"])),
+                    elapsed=record["elapsed"],
+                )
+                for record in records
+                if record["status"] != "ok"
             )
-            for record in records
-            if record["status"] != "ok"
-        )
 
     def reference(self, level: int) -> dict[str, Any] | None:
         """What normalises at a level, as ``Reference.as_dict`` gave it; None if it is not there (yet)."""
         with self._reading() as content:
-            row = next(content.rows("reference", "WHERE level = ?", (level,)), None)
-            data: dict[str, Any] | None = None if row is None else json.loads(row[1])
-        return data
+            found: dict[int, dict[str, Any]] = {
+                known: json.loads(text) for known, text in content.all_rows("reference")
+            }
+        return found.get(level)
 
 
 def _record(table: str, row: Sequence[Any]) -> dict[str, Any]:

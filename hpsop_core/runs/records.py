@@ -10,6 +10,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
 
+from hpsop_core.case.fields import rules
+from hpsop_core.case.sections import OptimizationSection
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.result import Evaluation
@@ -130,6 +132,18 @@ def generation_from_text(text: str) -> Generation:
     data = json.loads(text)
     values: dict[str, Any] = {key: tuple(value) if isinstance(value, list) else value for key, value in data.items()}
     return Generation(**values)
+
+
+MOST_GENERATIONS = int(rules(OptimizationSection)["generations"].upper)
+"""That a run may have in total, extensions included: what a case may state."""
+
+
+def generations_asked(values: Mapping[str, str]) -> int:
+    """Generations asked for in total, of the table ``run``; earlier versions let more be asked than any case may."""
+    asked = int(values["generations"])
+    if asked < 1:
+        raise ValueError(f"{asked} generations")
+    return min(asked, MOST_GENERATIONS)
 
 
 def fingerprint(level: int, variables: str) -> int:

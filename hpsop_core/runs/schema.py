@@ -17,8 +17,8 @@ APPLICATION_ID = 0x48505350
 
 SCHEMA_VERSION = 4
 OLDEST_SCHEMA = 2
-"""The oldest version that is read; 1 was never published. 3 keeps more of the initial design's numbers in a reference (an
-old reference stays as it is: whoever reads it knows the three numbers that it has); 4 has checksums and files."""
+"""The oldest version that is read; 1 was never published. 3 keeps more of the initial design's numbers in a reference
+(an old one stays as it is: whoever reads it knows the three numbers that it has); 4 has checksums and files."""
 
 CHECKSUMS_SINCE = 4
 
@@ -150,15 +150,13 @@ def schema_version(connection: sqlite3.Connection, path: Path) -> int:
     """The file's schema version; 0 for an empty file.
 
     Raises:
-        InputError: no SQLite file, another program's, or from a newer hpsop; one line that says which.
+        InputError: another program's, or from a newer hpsop; one line that says which.
         DamagedRunError: its tables are not those of its version.
+        sqlite3.Error: no SQLite file, or a damaged one (see ``checksums.damage_told``).
     """
-    try:
-        application = connection.execute("PRAGMA application_id").fetchone()[0]
-        version = int(connection.execute("PRAGMA user_version").fetchone()[0])
-        found = _declarations(connection)
-    except sqlite3.DatabaseError as error:
-        raise InputError(f"{path}: cannot be read as a run file ({error}); choose another file") from error
+    application = connection.execute("PRAGMA application_id").fetchone()[0]
+    version = int(connection.execute("PRAGMA user_version").fetchone()[0])
+    found = _declarations(connection)
     if application == 0 and not found:
         return 0
     if application != APPLICATION_ID:

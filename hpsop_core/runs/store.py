@@ -25,7 +25,14 @@ from hpsop_core.runs.content import RunContent
 from hpsop_core.runs.lock import WriterLock, refuse_second_name
 from hpsop_core.runs.migrations import lift
 from hpsop_core.runs.packing import dictionary_of, pack
-from hpsop_core.runs.records import fingerprint, generation_from_text, generation_text, json_text, variables_text
+from hpsop_core.runs.records import (
+    fingerprint,
+    generation_from_text,
+    generation_text,
+    generations_asked,
+    json_text,
+    variables_text,
+)
 from hpsop_core.runs.schema import (
     COLUMNS,
     HAND_IDS_BEGIN,
@@ -113,29 +120,28 @@ class RunStore:
         there, self._had_log = self._real.exists(), log_path(self._real).exists()
         connection = None
         try:
-            connection = connect_writer(self._real)
-            version = schema_version(connection, path)
-            self.created = version == 0
-            if version == 0:
-                if self._real.stat().st_size > 0:
-                    raise InputError(
-                        f"{path}: is a database without content: a copy of a run without its {path.name}-wal, perhaps; "
-                        "copy both, or delete it to begin anew"
-                    )
-                if case is None:
-                    raise missing
-                _create(connection, case, seeds)
-            elif version < SCHEMA_VERSION:
-                lift(connection, path)
-            begin_log(connection)
-        except BaseException as error:
+            with damage_told(path, "be written", "make room or choose another place"):
+                connection = connect_writer(self._real)
+                version = schema_version(connection, path)
+                self.created = version == 0
+                if version == 0:
+                    if self._real.stat().st_size > 0:
+                        raise InputError(
+                            f"{path}: is a database without content: a copy of a run without its {path.name}-wal, "
+                            "perhaps; copy both, or delete it to begin anew"
+                        )
+                    if case is None:
+                        raise missing
+                    _create(connection, case, seeds)
+                elif version < SCHEMA_VERSION:
+                    lift(connection, path)
+                begin_log(connection)
+        except BaseException:
             if connection is not None:
                 connection.close()
             with contextlib.suppress(OSError):
                 if not there and self._real.stat().st_size == 0:
                     self._real.unlink()
-            if isinstance(error, sqlite3.Error):
-                raise InputError(f"{path}: cannot be written ({error}); make room or choose another place") from error
             raise
         return connection
 
@@ -226,7 +232,7 @@ class RunStore:
     def generations(self) -> int:
         """Generations asked for in total, extensions included."""
         with damage_told(self.path):
-            return int(self.value("generations"))
+            return generations_asked({"generations": self.value("generations")})
 
     def value(self, key: str, default: str = "") -> str:
         """A value of the run by its key."""
@@ -277,7 +283,7 @@ class RunStore:
         found = {}
         with self._guard, damage_told(self.path):
             content = self._content()
-            for row in content.all_rows("evaluations", "id"):
+            for row in content.all_rows("evaluations"):
                 record = dict(zip(COLUMNS["evaluations"], row, strict=True))
                 if record["origin"] != "hand":
                     outcome = Outcome.from_json(record["id"], content.document(row))
@@ -350,7 +356,7 @@ class RunStore:
     def generation_times(self) -> list[tuple[int, float]]:
         """(level, wall time in s) of every finished generation, in order."""
         with self._guard, damage_told(self.path):
-            rows = self._content().all_rows("generations", "number")
+            rows = self._content().all_rows("generations")
         return [(int(level), float(elapsed)) for _, level, _, elapsed, _ in rows]
 
     def record_generation(self, generation: Generation, elapsed: float) -> None:
