@@ -52,9 +52,11 @@ class Explorer:
         workers: processes of a run.
         restored: what the settings were when the server last stopped (``remembered``), if they are to come back.
         origins: Origins of pages that may drive this one beside its own (``origin_of``).
+        run_asked: whether a person asked for that run; where not, the demonstration stands in for one that is damaged.
 
     Attributes:
         address: what opens the page, with its token.
+        trouble: why another run is shown than the one given, or "".
 
     Raises:
         InputError: the run file or the address cannot be used.
@@ -71,6 +73,7 @@ class Explorer:
         workers: int | None = None,
         restored: Mapping[str, Any] | None = None,
         origins: Sequence[str] = (),
+        run_asked: bool = True,
     ) -> None:
         self.folder = folder or runs_folder()
         token = token_of(self.folder)
@@ -85,8 +88,9 @@ class Explorer:
         browsers = remembered(self.folder).browsers
         self.state = AppState(draft, worker, Hub(worker), RunPicture("", case), memory=browsers)
         self.services = open_services(self.state, RunLibrary(self.folder), workers)
+        self.trouble = ""
         if run is not None:
-            self.services.runs.open(run, read_only)
+            self._open(run, read_only, run_asked)
         self.access = Access(token, origins)
         self.server = secure_server(host, port, "hpsop", self.access)
         self.state.hub.on(("draft",), self.services.runs.draft_changed)
@@ -103,6 +107,18 @@ class Explorer:
         early = threading.Timer(_IMPORT_SECONDS, importlib.import_module, ("hpsop_core.runs.replay",))
         early.daemon = True
         early.start()
+
+    def _open(self, run: Path, read_only: bool, asked: bool) -> None:
+        try:
+            self.services.runs.open(run, read_only)
+        except HpsopError as error:
+            if asked:
+                raise
+            self.trouble = str(error)
+            shown = demonstration()
+            if shown is not None and shown != run:
+                with contextlib.suppress(HpsopError):
+                    self.services.runs.open(shown, read_only=True)
 
     def _warm_up(self) -> None:
         try:
@@ -235,10 +251,13 @@ def main(argv: Sequence[str] | None = None) -> int:
             arguments.workers,
             opening.restored,
             origins,
+            run_asked=arguments.what is not None,
         )
     except HpsopError as error:
         sys.stderr.write(f"{error}\n")
         return 2
+    if explorer.trouble:
+        sys.stderr.write(f"{explorer.trouble}\nthe demonstration is shown instead\n")
     if port != arguments.port:
         sys.stderr.write(f"port {arguments.port} is busy; using {port}\n")
     if arguments.host not in ("127.0.0.1", "localhost", "::1"):
@@ -249,6 +268,12 @@ def main(argv: Sequence[str] | None = None) -> int:
     sys.stdout.write(f"hpsop explorer: {explorer.address}   (Ctrl-C ends it)\n")
     sys.stdout.flush()
     signal.signal(signal.SIGTERM, lambda *_: explorer._gone.set())
+    # The terminal was closed; with nohup it is ignored, and stays so.
+    if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
+        signal.signal(signal.SIGHUP, lambda *_: explorer._gone.set())
+    if not arguments.no_browser:
+        with contextlib.suppress(webbrowser.Error):
+            webbrowser.open(explorer.address)
     try:
         with contextlib.nullcontext() if arguments.no_browser else door(folder, explorer.address) as entrance:
             if entrance is not None:

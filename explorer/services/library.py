@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import os
 import re
 import time
@@ -21,6 +22,9 @@ _STATES = {
     "interrupted": "interrupted",
     "new": "not started",
 }
+
+NOT_READABLE = "not readable"
+"""Stands as the title of a file that cannot be opened; its summary says why."""
 
 
 @dataclass(frozen=True)
@@ -106,6 +110,13 @@ class RunLibrary:
             found.append(known[1])
         return sorted(found, key=lambda entry: -entry.modified)
 
+    def refuse(self, path: Path, reason: str) -> None:
+        """List a run as not readable: its damage lies deeper than a listing looks."""
+        with contextlib.suppress(OSError):
+            status = path.stat()
+            entry = LibraryEntry(path.name, NOT_READABLE, reason, status.st_mtime, True)
+            self._known[path.name] = ((status.st_mtime, status.st_size), entry)
+
     def delete(self, name: str) -> None:
         """Delete a run for good.
 
@@ -138,7 +149,8 @@ def _entry(path: Path, modified: float) -> LibraryEntry:
         total = reader.generations_asked()
         summary = f"{_STATES.get(state, state)}, generation {done} of {total}, {evaluations} evaluations"
         free = not is_being_written(path)
-        left = state != "failed" and done < total
+        # Also a failed run may go on: what ended it may have been the machine.
+        left = done < total
         return LibraryEntry(path.name, reader.case.title, summary, modified, free, free and left)
     except HpsopError as error:
-        return LibraryEntry(path.name, "not readable", str(error), modified, True)
+        return LibraryEntry(path.name, NOT_READABLE, str(error), modified, True)

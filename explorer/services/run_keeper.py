@@ -6,6 +6,7 @@ picture is made on the shared worker, at most a few times a second, from what is
 
 from __future__ import annotations
 
+import dataclasses
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -73,6 +74,7 @@ class RunKeeper:
         self._stop_asked = False
         self._begun = False
         self._error = ""
+        self._trouble = ""
         self._event: RunEvent | None = None
         self._closed = threading.Event()
         self._guard = threading.RLock()
@@ -199,6 +201,7 @@ class RunKeeper:
 
     def _watch(self) -> None:
         last: tuple[object, ...] = ()
+        now: tuple[object, ...]
         while not self._closed.wait(_POLL_SECONDS):
             try:
                 self._release()
@@ -206,8 +209,11 @@ class RunKeeper:
                 if reader is None:
                     continue
                 now = (*reader.progress(), *reader.state())
-            except HpsopError:
-                continue
+                self._trouble = ""
+            except HpsopError as error:
+                # Deleted, renamed, replaced, cut short or damaged while it is on display.
+                now = (str(error),)
+                self._trouble = str(error) if self._picture is not None else ""
             if now != last:
                 last = now
                 self._on_news()
@@ -268,7 +274,14 @@ class RunKeeper:
     def picture(self) -> RunPicture:
         """The run as it is now."""
         with self._guard:
-            return self._make_picture()
+            try:
+                return self._make_picture()
+            except HpsopError as error:
+                if self._picture is None:
+                    raise
+                # What was read stays on display, with the word why no more comes.
+                status = self._picture.status if self.driven else FAILED
+                return dataclasses.replace(self._picture, status=status, message=str(error), live=self.driven)
 
     def _make_picture(self) -> RunPicture:
         reader = self._ensure_reader()
@@ -368,7 +381,7 @@ class RunKeeper:
                 return STOPPING, "waiting for the evaluations under way"
             if status == STARTING:
                 return STARTING, "starting the workers and evaluating the initial design"
-            return status, snapshot.reason
+            return status, snapshot.reason or self._trouble
         if self._error:
             return FAILED, self._error
         if reader is None:

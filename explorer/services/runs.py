@@ -12,7 +12,7 @@ from explorer.services.display import Display
 from explorer.services.library import LibraryEntry, RunLibrary
 from explorer.services.run_keeper import RunKeeper
 from explorer.state.run_picture import ACTIVE, FAILED, IDLE, STARTING, STOPPING, RunPicture
-from hpsop_core.errors import InputError
+from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.runs.executor import default_workers
 
@@ -106,11 +106,18 @@ class Runs:
         self.control("continue")
 
     def _show(self, keeper: RunKeeper) -> None:
+        try:
+            picture = keeper.picture()
+        except HpsopError as error:
+            # Damaged further in than its first look: what is on display stays.
+            keeper.close()
+            self._library.refuse(keeper.path, str(error))
+            raise
         old, self._keeper = self._keeper, keeper
         self._designs.read_from(keeper)
         if old is not None:
             old.close()
-        self._display.show_run(keeper.picture(), self._designs.first)
+        self._display.show_run(picture, self._designs.first)
         self._display.tell_all("library")
 
     def news(self) -> None:

@@ -170,6 +170,10 @@ def _summary_lines(run: RunReader) -> list[str]:
     ]
     if summary["state"] == "interrupted":
         lines.append(f"to go on: the same 'hpsop optimize ... --run {summary['run']}' again, or Continue on the page")
+    try:
+        run.check_ship()
+    except InputError as error:
+        lines.append(f"warning: {error}")
     for level, numbers in summary["evaluations"].items():
         wall = summary["wall_seconds"].get(level, 0.0)
         lines.append(

@@ -84,6 +84,7 @@ def export_design(
         SolverFailure: the form or its resistance curve cannot be computed.
     """
     wanted = checked_formats(USUAL_FORMATS if formats is None else formats)
+    run.check_ship()
     record = run.design(design)
     if not record.evaluation.ok:
         raise InputError(

@@ -46,7 +46,12 @@ from hpsop_core.version import __version__
 
 
 def report_html(run: RunReader) -> str:
-    """The report's text."""
+    """The report's text.
+
+    Raises:
+        InputError: the run names a hull or propeller file that is gone or changed (``RunReader.check_ship``).
+    """
+    run.check_ship()
     data = ReportData.of(run)
     summary = run.summary()
     failures = run.failures()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from pathlib import Path
+
 from hpsop_core.case.case import KNOT, Case
 from hpsop_core.case.constraints import CONSTRAINTS
 from hpsop_core.case.objectives import objective_named
@@ -53,9 +55,11 @@ def assumptions(case: Case) -> Markup:
     """Form, speed, conditions, objectives, constraints with their level, calibration and constants."""
     hull, propeller, constants = case.hull, case.propeller, case.constants
     hull_file = hull.own_file
-    own_hull = f"own hull from {hull_file}" if hull_file else f"parent hull {hull.parent}"
+    own_hull = f"own hull from {Path(hull_file).name}" if hull_file else f"parent hull {hull.parent}"
     own_blades = (
-        f"own propeller from {propeller.geometry}" if propeller.geometry else f"parent propeller {propeller.parent}"
+        f"own propeller from {Path(propeller.geometry).name}"
+        if propeller.geometry
+        else f"parent propeller {propeller.parent}"
     )
     lines: list[Words] = [
         fill("<strong>Parents</strong>: {}, {}.", one_line(own_hull), one_line(own_blades)),

@@ -13,6 +13,7 @@ from typing import Any
 from hpsop_core.case.case import Case, case_from_toml
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
+from hpsop_core.evaluation.levels import FAST
 from hpsop_core.evaluation.result import evaluation_from_dict
 from hpsop_core.optimization.decision import compromise
 from hpsop_core.optimization.generation import Generation
@@ -30,9 +31,13 @@ from hpsop_core.runs.records import (
     named_variables,
 )
 from hpsop_core.runs.schema import COLUMNS, FIRST_SEARCH_ID, HAND_IDS_BEGIN, schema_version
-from hpsop_core.runs.ship import ShipFile, with_files
+from hpsop_core.runs.ship import ShipFile, named_files, refuse_changed_ship, with_files
 
 _BEYOND_ANY_ID = 2**63  # SQLite's integers end here
+
+
+class NotEvaluatedError(InputError):
+    """A design that a run will have is not there yet."""
 
 
 class RunReader:
@@ -116,6 +121,20 @@ class RunReader:
         """Designs that the run was started from."""
         with damage_told(self.path):
             return tuple(DesignVariables.from_dict(seed) for seed in json.loads(self._values["seeds"]))
+
+    def check_ship(self) -> None:
+        """Whether the files of an own hull and propeller still give the run's designs: only a question of runs that
+        earlier versions began, which name files elsewhere; a run of this version holds its own.
+
+        Raises:
+            InputError: one is gone, or gives another initial design; the run's numbers can be read all the same.
+        """
+        if self.files or not named_files(self.case):
+            return
+        with contextlib.suppress(NotEvaluatedError):
+            record = self.initial(FAST.number)
+            if record.evaluation.ok:
+                refuse_changed_ship(self.path, self.case, record.evaluation.as_dict())
 
     def state(self) -> tuple[str, str]:
         """(state, reason): as ``events.State``, or "interrupted" for a run whose process was killed."""
@@ -295,14 +314,14 @@ class RunReader:
         """The initial design at a level (at the other one while that is all there is).
 
         Raises:
-            InputError: it is not evaluated yet.
+            NotEvaluatedError: it is not evaluated yet.
         """
         with self._reading() as content:
             # An initial design has an id below the search's: no look at thousands of others.
             which = "WHERE id < ? AND origin = 'initial' ORDER BY level <> ? LIMIT 1"
             row = next(content.rows("evaluations", which, (FIRST_SEARCH_ID, level)), None)
         if row is None:
-            raise InputError(f"{self.path}: its initial design is not evaluated yet; let the run go on")
+            raise NotEvaluatedError(f"{self.path}: its initial design is not evaluated yet; let the run go on")
         return self.designs([int(row[0])])[0]
 
     def front(self, generation: int | None = None) -> tuple[DesignRecord, ...]:
@@ -347,6 +366,7 @@ class RunReader:
                 self._check_none_missing(after, [row[0] for row in rows])
             else:
                 rows = content.all_rows("evaluations")
+                self._check_none_missing(0, [row[0] for row in rows])
             records = [_record("evaluations", row) for row in rows]
             return tuple(
                 ArchivePoint(
@@ -364,7 +384,7 @@ class RunReader:
             )
 
     def _check_none_missing(self, after: int, ids: Sequence[int]) -> None:
-        """The designs of finished generations are all there: after the initial design's, ids of the search leave no gap."""
+        """The designs of finished generations are all there: ids of the search leave no gap."""
         last = max((max(record.generation.asked) for record in self._generations.values()), default=0)
         first = max(after + 1, FIRST_SEARCH_ID)
         if sum(first <= number <= last for number in ids) != max(0, last + 1 - first):

@@ -122,8 +122,10 @@ def refuse_changed_ship(path: Path, case: Case, initial: Mapping[str, Any]) -> N
                 f"{path}: was begun by an earlier hpsop, which did not keep {text} in the run, and that file is gone; "
                 "put it back there; the run's numbers can be read without it"
             )
-    hull = design_hull(case, case.initial.variables).hydrostatics
-    blades = design_propeller(case, case.initial.variables)
+    # By their content: hulls are remembered by the names of their files, and this one may have been edited since.
+    now_there = with_files(case, read_files(case))
+    hull = design_hull(now_there, case.initial.variables).hydrostatics
+    blades = design_propeller(now_there, case.initial.variables)
     pairs = (
         (initial["hull"]["displaced_volume"], hull.displaced_volume),
         (initial["hull"]["wetted_surface"], hull.wetted_surface),

@@ -6,6 +6,7 @@ import hashlib
 import os
 import signal
 import time
+from dataclasses import replace
 from functools import partial
 from pathlib import Path
 
@@ -65,6 +66,24 @@ def physics(function: object = evaluate) -> Physics:
 def marking(function: object, marks: Path) -> Physics:
     """A physics around an evaluation that leaves marks in a folder."""
     return physics(partial(function, marks=marks))  # type: ignore[call-overload]
+
+
+def with_shape(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """The same with the true figures of hull and propeller."""
+    from hpsop_core.evaluation.shapes import design_hull, design_propeller
+
+    result = evaluate(case, variables, level, reference)
+    assert result.ok
+    hull, blades = design_hull(case, variables).hydrostatics, design_propeller(case, variables)
+    return replace(
+        result,
+        hull=replace(HULL, displaced_volume=hull.displaced_volume, wetted_surface=hull.wetted_surface),
+        propeller=replace(
+            PROPELLER,
+            pitch_diameter_ratio_07R=blades.pitch_diameter_ratio_07R,
+            expanded_area_ratio=blades.expanded_area_ratio,
+        ),
+    )
 
 
 def slow(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:

@@ -51,14 +51,15 @@ def content(path: Path, ids: bool = True) -> dict[str, Any]:
     return {"evaluations": evaluations, "generations": generations}
 
 
-def old_file(path: Path) -> int:
+def old_file(path: Path, case: Case | None = None, function: object = None) -> int:
     """A finished run as the schema before the checksums wrote it; returns how many evaluations it has."""
     import quick_physics
 
     from hpsop_core.runs.controller import optimize
 
     new = path.with_name("new-" + path.name)
-    optimize(small_case(), new, workers=1, physics=quick_physics.physics())
+    asked = small_case() if case is None else case
+    optimize(asked, new, workers=1, physics=quick_physics.physics(function or quick_physics.evaluate))
     source, target = sqlite3.connect(new), sqlite3.connect(path)
     declared = source.execute("SELECT sql FROM sqlite_master WHERE sql IS NOT NULL").fetchall()
     for (statement,) in sorted(declared, key=lambda row: "TRIGGER" in row[0] or "INDEX" in row[0]):
@@ -73,6 +74,8 @@ def old_file(path: Path) -> int:
             target.executemany(
                 f"INSERT INTO {table} VALUES ({marks})", source.execute(f"SELECT {names} FROM {table} {keep}")
             )
+    # It named files where they stood.
+    target.execute("UPDATE run SET value = ? WHERE key = 'case'", (asked.to_toml(),))
     target.execute(f"PRAGMA application_id = {APPLICATION_ID}")
     target.execute("PRAGMA user_version = 2")
     target.commit()
