@@ -271,9 +271,6 @@ def main(argv: Sequence[str] | None = None) -> int:
     # The terminal was closed; with nohup it is ignored, and stays so.
     if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
         signal.signal(signal.SIGHUP, lambda *_: explorer._gone.set())
-    if not arguments.no_browser:
-        with contextlib.suppress(webbrowser.Error):
-            webbrowser.open(explorer.address)
     try:
         with contextlib.nullcontext() if arguments.no_browser else door(folder, explorer.address) as entrance:
             if entrance is not None:
