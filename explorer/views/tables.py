@@ -21,6 +21,7 @@ from hpsop_core.quantities import (
 )
 
 _ROOM_FOR_NAMES = 4
+_CONDITIONS_APART = 2
 _PLAIN_CHANGE = {CONSTRAINT_GROUP}
 
 
@@ -139,12 +140,27 @@ def design_card(shown: Shown) -> Markup:
     names = conditions_of(evaluation)
     columns = [_table([_card_row(quantity, shown) for quantity in (*OBJECTIVES, *HULL, *PROPELLER, *CONSTRAINTS)])]
     quantities = condition_quantities(names)
-    per_condition = len(quantities) // max(len(names), 1)
-    for index in range(len(names)):
-        part = quantities[index * per_condition : (index + 1) * per_condition]
-        group = fill('<tr class="group"><td colspan="2">{}</td></tr>', part[0].group)
-        columns.append(_table([group, *(_card_row(quantity, shown) for quantity in part)]))
+    each = len(quantities) // max(len(names), 1)
+    groups = [quantities[index * each : (index + 1) * each] for index in range(len(names))]
+    if len(groups) > _CONDITIONS_APART:
+        columns.append(_conditions_side_by_side(shown, names, groups))
+    else:
+        for part in groups:
+            group = fill('<tr class="group"><td colspan="2">{}</td></tr>', part[0].group)
+            columns.append(_table([group, *(_card_row(quantity, shown) for quantity in part)]))
     return joined([headline(shown), fill('<div class="columns">{}</div>', joined(columns)), warnings_html(shown)])
+
+
+def _conditions_side_by_side(shown: Shown, names: Sequence[str], groups: Sequence[Sequence[Quantity]]) -> Markup:
+    """A row a quantity, a column a condition: many conditions would not fit beside each other otherwise."""
+    rows = [fill("<tr><th></th>{}<th></th></tr>", joined(fill("<th>{}</th>", name) for name in names))]
+    for own in zip(*groups, strict=True):
+        if all(quantity.value(shown.evaluation) is None for quantity in own):
+            continue
+        cells = joined(fill("<td>{}</td>", quantity.text(shown.evaluation)) for quantity in own)
+        symbol = symbol_html(own[0].symbol.removesuffix("1").removesuffix("_"))
+        rows.append(fill('<tr><td>{}</td>{}<td class="unit">{}</td></tr>', symbol, cells, own[0].unit))
+    return _table(rows)
 
 
 def _card_row(quantity: Quantity, shown: Shown) -> Markup:

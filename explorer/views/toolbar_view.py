@@ -20,7 +20,7 @@ from explorer.views.tables import headline
 from hpsop_core.errors import HpsopError
 from hpsop_core.export.design_files import zip_design
 from hpsop_core.markup import Markup, fill, joined
-from hpsop_core.quantities import number_text
+from hpsop_core.quantities import conditions_of, number_text
 
 _SWITCHES = (
     ("ghost", "Ghost", "the initial design beside the selected one; choose another in Compare"),
@@ -67,12 +67,12 @@ class ToolbarView:
             conditions = joined(
                 chip(
                     "condition",
-                    f"Fn {condition.froude_number:.3f}",
+                    name,
                     str(index),
                     on=options.condition == index,
                     hint="the condition of waves, pressure and rotation",
                 )
-                for index, condition in enumerate(shown.evaluation.conditions)
+                for index, name in enumerate(conditions_of(shown.evaluation))
             )
             row = joined([soft("At", "span"), chips(conditions)])
         other = (

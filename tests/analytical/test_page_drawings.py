@@ -14,9 +14,9 @@ from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, ramp
 from explorer.scene.transfer import transferred
 from explorer.services.answers import Answers
 from explorer.state.shown import Shown
-from explorer.views.tables import many_table
-from hpsop_core.case.case import Case, load_case
-from hpsop_core.evaluation.result import Evaluation
+from explorer.views.tables import design_card, many_table
+from hpsop_core.case.case import KNOT, Case, load_case
+from hpsop_core.evaluation.result import Evaluation, Failed
 from hpsop_core.quantities import change_text, number_text
 
 Array = NDArray[np.float64]
@@ -91,6 +91,19 @@ def test_each_pinned_design_is_compared_at_its_own_level(initial: Evaluation):
     row = re.search(r'<tr data-compare="f1">(.*?)</tr>', table)
     assert row
     assert re.findall(r"[+−]?[\d.]+ %", row.group(1)) == ["0.0 %", "+25.0 %"]
+
+
+def test_the_card_of_many_conditions_has_a_column_each(initial: Evaluation):
+    assert initial.ok
+    first = initial.conditions[0]
+    conditions = tuple(dataclasses.replace(first, speed=knots * KNOT) for knots in (16, 18, 20, 22, 24, 25))
+    card = design_card(Shown("Design 7", dataclasses.replace(initial, conditions=conditions)))
+    assert re.findall(r"<th>([^<]+)</th>", card) == ["16 kn", "18 kn", "20 kn", "22 kn", "24 kn", "25 kn"]
+    row = re.search(r"<tr><td>R<sub>T</sub></td>(.*?)</tr>", card)
+    assert row
+    assert len(re.findall("<td>", row.group(1))) == 6
+    assert "Condition 1: 25.26 kn" in design_card(Shown("Design 7", initial))
+    assert "failed" in design_card(Shown("Design 8", Failed("case", 1, initial.variables, "hull", "no form")))
 
 
 # ---- the 3D view -----------------------------------------------------------------------------------------------------
