@@ -102,7 +102,7 @@ def test_the_card_of_many_conditions_has_a_column_each(initial: Evaluation):
     row = re.search(r"<tr><td>R<sub>T</sub></td>(.*?)</tr>", card)
     assert row
     assert len(re.findall("<td>", row.group(1))) == 6
-    assert "Condition 1: 25.26 kn" in design_card(Shown("Design 7", initial))
+    assert "Condition 1: 25.23 kn" in design_card(Shown("Design 7", initial))
     assert "failed" in design_card(Shown("Design 8", Failed("case", 1, initial.variables, "hull", "no form")))
 
 
