@@ -97,6 +97,20 @@ def test_transom_too_wide_to_be_closed(tmp_path: Path, resistance: Answer) -> No
     assert points[0]["wave_coefficient"] > 0.0
 
 
+def test_a_wide_transom_is_solved_where_it_is_dry(tmp_path: Path, resistance: Answer) -> None:
+    """By the table 0.625 m deep: V/sqrt(g h) is 2.5 at Froude number 0.198; at 0.3 the water leaves it, at 0.14 not."""
+    file = table(tmp_path / "dry.csv", STATIONS, WATERLINES, with_transom(5.9, 26.0))
+    code, points, errors = resistance(file, 0.30, 0.35)
+    assert code == 0, errors
+    for point in points:
+        assert any("dry at all these speeds" in line for line in point["warnings"])
+        # The closure's own share: momentum and pressure agree as they do on transoms of half the breadth.
+        assert 0.67 < point["wave_coefficient"] / point["wave_coefficient_pressure"] < 1.5
+    code, points, errors = resistance(file, 0.14, 0.30)
+    assert (code, points) == (1, [])
+    assert "where they are dry (V/sqrt(g h) of 2.5, here from Froude number 0.198" in errors
+
+
 def test_barge(tmp_path: Path, resistance: Answer) -> None:
     code, points, errors = resistance(table(tmp_path / "b.csv", STATIONS, WATERLINES, np.full((41, 11), 8.0)), 0.2)
     assert (code, points) == (1, [])

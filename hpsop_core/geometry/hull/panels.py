@@ -27,6 +27,9 @@ CROWN_COVER = 0.005
 # Blunter than the least slenderness it would make more waves than the hull.
 TAIL_SLENDERNESS, TAIL_REACH, LEAST_TAIL_SLENDERNESS = 6.0, 0.3, 4.0
 TAIL_PANELS = 8
+# From this V/sqrt(g h) on a transom immersed by h is dry (towing tests of transom sterns lie between 2.2 and 2.8). Then
+# blunter tails will do: other closures of such hulls change the wave coefficient by 8 % at Fn 0.30, 2 % from 0.35 on.
+DRY_TRANSOM, LEAST_DRY_SLENDERNESS = 2.5, 1.8
 
 
 @dataclass(frozen=True, eq=False)
@@ -106,27 +109,39 @@ def _cap_quads(edge: Array, end: str) -> Array:
     return solid
 
 
-def _tail_points(edge: Array, draft: float, length: float) -> Array:
-    """The closure behind a wet transom: its section shrinks like 1 - s^2 towards a point in the waterline.
+def transom_froude_number(froude_number: float, length: float, depth: float) -> float:
+    """V/sqrt(g h) of a transom immersed by h = ``depth`` m, from V/sqrt(g L)."""
+    return float(froude_number * np.sqrt(length / depth))
+
+
+def _tail_points(edge: Array, draft: float, length: float, slowest: float | None) -> Array:
+    """The closure behind a transom in the water: its section shrinks like 1 - s^2 towards a point in the waterline.
 
     Args:
         edge: (n, 3) the transom's section from keel to waterline.
         draft, length: of the hull, m.
+        slowest: the least Froude number that is asked; None: not known.
 
     Returns:
         (TAIL_PANELS + 1, n, 3), from the point forward to the transom.
 
     Raises:
-        SolverFailure: the transom is too wide for a tail of this hull's length.
+        SolverFailure: the transom is too wide for a tail of this hull's length, and not dry at the least speed.
     """
     half_breadth = float(edge[-1, 1])
+    depth = draft - float(np.min(edge[:, 2]))
     room = float(edge[-1, 0]) + TAIL_REACH * length
-    if room < LEAST_TAIL_SLENDERNESS * half_breadth:
+    clears = 0.0 if slowest is None else transom_froude_number(slowest, length, depth)
+    least = LEAST_TAIL_SLENDERNESS if clears < DRY_TRANSOM else LEAST_DRY_SLENDERNESS
+    if room < least * half_breadth:
+        dry = DRY_TRANSOM * (depth / length) ** 0.5
         raise SolverFailure(
             "rankine",
-            f"the wet transom is {2.0 * half_breadth:.4g} m wide at the waterline: the water behind it cannot be "
-            f"closed smoothly within {room:.4g} m; this solver takes wet transoms up to "
-            f"{2.0 * room / LEAST_TAIL_SLENDERNESS:.4g} m wide on this length, and dry ones (a smaller draft)",
+            f"the wet transom is {2.0 * half_breadth:.4g} m wide and {depth:.4g} m deep: the water behind it cannot be "
+            f"closed smoothly within {room:.4g} m; this solver takes transoms up to "
+            f"{2.0 * room / LEAST_TAIL_SLENDERNESS:.4g} m wide on this length, and up to "
+            f"{2.0 * room / LEAST_DRY_SLENDERNESS:.4g} m where they are dry (V/sqrt(g h) of {DRY_TRANSOM:g}, here from "
+            f"Froude number {dry:.3f}; asked {'nothing' if slowest is None else format(slowest, '.3f')})",
         )
     reach = max(min(TAIL_SLENDERNESS * half_breadth, room), 1e-3 * length)
     s = np.linspace(1.0, 0.0, TAIL_PANELS + 1)[:, None]
@@ -137,16 +152,17 @@ def _tail_points(edge: Array, draft: float, length: float) -> Array:
     )
 
 
-def hull_panels(hull: Hull, lengthwise: int, girthwise: int) -> HullPanels:
+def hull_panels(hull: Hull, lengthwise: int, girthwise: int, slowest: float | None = None) -> HullPanels:
     """Panels of a hull's underwater patches.
 
-    Flat ends (a boss, a blunt nose) are closed by flat panels. A wet transom, whose flow leaves the hull at its edge,
-    is closed by a short tail that carries on the waterline; the tail is no part of the hull's wetted surface.
+    Flat ends (a boss, a blunt nose) are closed by flat panels. A transom in the water, whose flow leaves the hull at
+    its edge, is closed by a short tail that carries on the waterline; the tail is no part of the hull's wetted surface.
 
     Args:
         hull: the hull.
         lengthwise: panels along a patch that spans more than half of the length; short patches get their share.
         girthwise: panels from keel to waterline of such a patch.
+        slowest: the least Froude number that will be asked: it decides whether a wide transom is dry.
 
     Raises:
         SolverFailure: a wet transom too wide to be closed.
@@ -166,7 +182,7 @@ def hull_panels(hull: Hull, lengthwise: int, girthwise: int) -> HullPanels:
             if (name, end) not in hull.parent.caps:
                 continue
             if end == "first" and edge[-1, 1] > 0.0 and edge[-1, 2] >= (1.0 - 1e-9) * hull.draft:
-                tail = _tail_points(edge, hull.draft, hull.length)
+                tail = _tail_points(edge, hull.draft, hull.length, slowest)
             else:
                 cap = _cap_quads(edge, end)
                 quads.append(cap)
@@ -179,10 +195,7 @@ def hull_panels(hull: Hull, lengthwise: int, girthwise: int) -> HullPanels:
         start, stop = tail[-1, -1], tail[0, -1]
         aft = np.stack([start[0] + (stop[0] - start[0]) * fine, start[1] * (1.0 - fine**2)], axis=1)
         waterline = np.concatenate([aft, waterline])
-        warnings = (
-            f"wet transom {2 * start[1]:.4g} m wide and {hull.draft - tail[-1, 0, 2]:.4g} m deep: closed by a tail of "
-            f"{start[0] - stop[0]:.4g} m in the wave calculation, whose waves count; the transom's own drag does not",
-        )
+        warnings = (_transom_line(float(start[1]), tail, hull, slowest),)
     measured = hull.hydrostatics
     return HullPanels(
         quads=np.concatenate(quads),
@@ -195,6 +208,24 @@ def hull_panels(hull: Hull, lengthwise: int, girthwise: int) -> HullPanels:
         vertical_centre_of_buoyancy=measured.vertical_centre_of_buoyancy,
         tail_panels=0 if tail is None else (tail.shape[0] - 1) * (tail.shape[1] - 1),
         warnings=warnings,
+    )
+
+
+def _transom_line(half_breadth: float, tail: Array, hull: Hull, slowest: float | None) -> str:
+    """What is said of a transom in the water: its size, how it is closed, and whether it is dry."""
+    depth = hull.draft - float(np.min(tail[-1, :, 2]))
+    line = (
+        f"transom {2 * half_breadth:.4g} m wide and {depth:.4g} m deep in the water: closed by a tail of "
+        f"{float(tail[-1, -1, 0] - tail[0, -1, 0]):.4g} m in the wave calculation, whose waves count"
+    )
+    if slowest is None:
+        return f"{line}; the transom's own drag does not"
+    clears = transom_froude_number(slowest, hull.length, depth)
+    if clears >= DRY_TRANSOM:
+        return f"{line}; dry at all these speeds (V/sqrt(g h) from {clears:.2f}, dry from {DRY_TRANSOM:g})"
+    return (
+        f"{line}; wet below Froude number {DRY_TRANSOM * (depth / hull.length) ** 0.5:.3f} (V/sqrt(g h) {clears:.2f} "
+        f"at {slowest:.3f}): there the transom's own drag is missing"
     )
 
 

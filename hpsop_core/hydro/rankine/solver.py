@@ -291,9 +291,9 @@ def solve(
         SolverFailure: no trustworthy number for this hull, with the reason.
     """
     chosen = settings or RankineSettings()
-    return solve_panels(
-        hull_panels(hull, chosen.hull_lengthwise, chosen.hull_girthwise), froude_numbers, chosen, fields
-    )
+    slowest = min(froude_numbers, default=None)
+    body = hull_panels(hull, chosen.hull_lengthwise, chosen.hull_girthwise, slowest)
+    return solve_panels(body, froude_numbers, chosen, fields)
 
 
 @one_blas_thread()
