@@ -129,18 +129,25 @@ def print_evaluation(result: Evaluation) -> None:
         print(f"warning: {warning}")
 
 
+_RESISTANCE_PARTS = (
+    ("Rf", "friction_resistance"),
+    ("k Rf", "form_resistance"),
+    ("Rw", "wave_resistance"),
+    ("Ra", "correlation_resistance"),
+    ("Raa", "air_resistance"),
+    ("Rapp", "appendage_resistance"),
+    ("Rt", "total_resistance"),
+)
+"""Symbol and name; all but the last add up to it."""
+
+
 def _print_conditions(conditions: Sequence[ConditionResult]) -> None:
     """Resistance in its parts, which add up, and propulsion."""
-    parts = (
-        ("Rf", "friction_resistance"), ("k Rf", "form_resistance"), ("Rw", "wave_resistance"),
-        ("Ra", "correlation_resistance"), ("Raa", "air_resistance"), ("Rapp", "appendage_resistance"),
-        ("Rt", "total_resistance"),
-    )  # fmt: skip
     print_table(
-        ["Fn", "V m/s", "V kn", *(f"{symbol} kN" for symbol, _ in parts)],
+        ["Fn", "V m/s", "V kn", *(f"{symbol} kN" for symbol, _ in _RESISTANCE_PARTS)],
         [
             [f"{c.froude_number:.4f}", f"{c.speed:.3f}", f"{c.speed / KNOT:.2f}"]
-            + [f"{(getattr(c, name) or 0.0) / 1e3:.1f}" for _, name in parts]
+            + [f"{(getattr(c, name) or 0.0) / 1e3:.1f}" for _, name in _RESISTANCE_PARTS]
             for c in conditions
         ],
     )
@@ -222,11 +229,12 @@ def _resistance(arguments: argparse.Namespace) -> int:
             f"{p.froude_number:.4f}", f"{p.speed:.4f}", f"{1e3 * p.friction_coefficient:.4f}",
             f"{1e3 * p.wave_coefficient:.4f}",
             "-" if p.wave_coefficient_pressure is None else f"{1e3 * p.wave_coefficient_pressure:.4f}",
-            f"{p.wave_resistance:.6g}", f"{p.total_resistance:.6g}",
+            *(f"{getattr(p, name):.6g}" for _, name in _RESISTANCE_PARTS),
         ]
         for p in result.points
     ]  # fmt: skip
-    print_table(["Fn", "V m/s", "10^3 CF", "10^3 Cw", "10^3 Cw(p)", "Rw N", "Rt N"], rows)
+    parts = [f"{symbol} N" for symbol, _ in _RESISTANCE_PARTS]
+    print_table(["Fn", "V m/s", "10^3 CF", "10^3 Cw", "10^3 Cw(p)", *parts], rows)
     return 0
 
 

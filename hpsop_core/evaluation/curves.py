@@ -144,9 +144,16 @@ def thrust_curves(case: Case, evaluation: Evaluation, points: tuple[ResistancePo
         advance = (1.0 - condition.wake_fraction) * speed / (rate * diameter)
         available.append(case.constants.density * rate**2 * diameter**4 * thrust_coefficient(advance))
     total = np.array([point.total_resistance for point in points])
+    froude_number = np.array([point.froude_number for point in points])
+    # t follows w, and w by Holtrop changes a little with the speed: each condition lies on the curve.
+    deduction = np.interp(
+        froude_number,
+        [condition.froude_number for condition in evaluation.conditions],
+        [condition.thrust_deduction for condition in evaluation.conditions],
+    )
     return ThrustCurves(
-        froude_number=np.array([point.froude_number for point in points]),
-        required=total / (1.0 - evaluation.conditions[0].thrust_deduction),
+        froude_number=froude_number,
+        required=total / (1.0 - deduction),
         available=tuple(available),
     )
 

@@ -1,7 +1,7 @@
 """Validation: our numbers beside experiments, published codes and closed forms, printed by ``hpsop validate``.
 
 * check: one line of it: a number, what it is held against, and how far it may be off
-* hull, resistance, rankine, propeller_level1, propeller_level2: the lines of a discipline
+* hull, resistance, powering, rankine, propeller_level1, propeller_level2: the lines of a discipline
 * rankine_studies, propeller_studies: sweeps that validation, pictures and docs share
 """
 
@@ -12,7 +12,7 @@ from collections.abc import Iterator
 
 from hpsop_core.validation.check import Check
 
-DISCIPLINES = ("hull", "resistance", "rankine", "propeller_level1", "propeller_level2")
+DISCIPLINES = ("hull", "resistance", "powering", "rankine", "propeller_level1", "propeller_level2")
 
 
 def all_checks() -> Iterator[Check]:

@@ -13,6 +13,7 @@ from hpsop_core.case.case import KNOT, Case, case_from_toml
 from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
+from hpsop_core.evaluation.curves import resistance_points, thrust_curves
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Ok, evaluation_from_dict
 from hpsop_core.quantities import condition_names, condition_quantities
@@ -253,3 +254,15 @@ def test_parts_of_an_earlier_versions_file_add_up() -> None:
         assert own.form_resistance == pytest.approx(other.form_resistance, rel=1e-12)
         assert own.brake_power == own.delivered_power
         assert own.propulsive_efficiency == other.propulsive_efficiency
+
+
+def test_each_condition_lies_on_the_thrust_curve_whatever_the_formulas() -> None:
+    # Holtrop's w changes with the speed, and Schoenherr's t with it.
+    case = CASE.replaced("constants", wake_formula="holtrop")
+    result = computed(case)
+    points = resistance_points(case, result, reference_for(case, 1))
+    curves = thrust_curves(case, result, points)
+    assert result.conditions[0].thrust_deduction != result.conditions[1].thrust_deduction
+    for condition in result.conditions:
+        place = curves.froude_number.tolist().index(condition.froude_number)
+        assert curves.required[place] == pytest.approx(condition.thrust, rel=1e-9)

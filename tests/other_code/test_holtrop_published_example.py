@@ -6,39 +6,23 @@ international knots; the viscosity is that of sea water at 15 C, which the print
 
 from __future__ import annotations
 
-import csv
 import dataclasses
 import math
 
 import numpy as np
 import pytest
 
-from hpsop_core.assets import read_asset_text
 from hpsop_core.errors import SolverFailure
 from hpsop_core.hydro import holtrop
 from hpsop_core.hydro.friction import ittc57_coefficient
 from hpsop_core.hydro.operating_point import PropellerCurve, match
 from hpsop_core.hydro.powering import ResistanceFactors, powers, resistance_parts
+from hpsop_core.validation.powering import EXPANDED_AREA_RATIO, VISCOSITY, checks, published_numbers
+from hpsop_core.validation.powering import PUBLISHED_SHIP as SHIP
 
 SPEED = 25.0 * 1852.0 / 3600.0
 DENSITY = 1025.0
-VISCOSITY = 1.188e-6
 DIAMETER = 8.0
-# Printed with 2.02 % aft of Lpp/2 on Lpp 200 m, which is 0.75 % of L aft of L/2.
-SHIP = holtrop.HoltropHull(
-    length=205.0,
-    breadth=32.0,
-    draft=10.0,
-    displaced_volume=37500.0,
-    midship_coefficient=0.980,
-    buoyancy_centre=-0.75,
-    wetted_surface=7381.45,
-    bulb_area=20.0,
-    bulb_centre_height=4.0,
-    stern_shape=10.0,
-    appendage_area=50.0,
-    appendage_form_factor=1.50,
-)
 FRICTION = ittc57_coefficient(SPEED * SHIP.length / VISCOSITY)
 ALLOWANCE = holtrop.correlation_allowance(SHIP)
 VISCOUS = holtrop.viscous_coefficient(holtrop.total_form_factor(SHIP), FRICTION, ALLOWANCE)
@@ -61,7 +45,7 @@ DYNAMIC = 0.5 * DENSITY * SPEED**2
         ("C_P1", SHIP.stern_prismatic_coefficient, 0.5477, 1e-4),
         ("w", holtrop.wake_fraction(SHIP, VISCOUS, DIAMETER), 0.2584, 1e-4),
         ("t", holtrop.thrust_deduction(SHIP, DIAMETER), 0.1747, 1e-4),
-        ("eta_R", holtrop.relative_rotative_efficiency(SHIP, 0.7393), 0.9931, 1e-4),
+        ("eta_R", holtrop.relative_rotative_efficiency(SHIP, EXPANDED_AREA_RATIO), 0.9931, 1e-4),
     ],
 )
 def test_printed_coefficients(name: str, value: float, printed: float, last_digit: float) -> None:
@@ -118,12 +102,6 @@ def test_the_branches_of_c12_meet(draft: float, c12: float) -> None:
     assert near == pytest.approx(c12, abs=1e-3)
 
 
-def printed_example() -> dict[str, float]:
-    lines = read_asset_text("reference", "holtrop_1982_example.csv").splitlines()
-    rows = csv.DictReader(line for line in lines if not line.startswith("#"))
-    return {row["quantity"]: float(row["value"]) for row in rows}
-
-
 @pytest.mark.parametrize("slope", [-0.35, -0.45, -0.55])
 def test_stated_numbers_give_the_printed_shaft_power(slope: float) -> None:
     """With allowance, w, t and eta_R stated, resistance, thrust, rate, efficiency and shaft power are the printed ones.
@@ -131,7 +109,7 @@ def test_stated_numbers_give_the_printed_shaft_power(slope: float) -> None:
     Of the authors' propeller one point is printed; a straight curve through it stands for the rest, and its slope may
     not matter, for the ship works there.
     """
-    ship = printed_example()
+    ship = published_numbers()
     dynamic = 0.5 * ship["density"] * ship["speed"] ** 2
     surface = SHIP.total_wetted_surface
     parts = resistance_parts(
@@ -174,3 +152,9 @@ def test_stated_numbers_give_the_printed_shaft_power(slope: float) -> None:
     assert point.rotation_rate == pytest.approx(ship["rotation_rate"], rel=2e-4)
     assert point.open_water_efficiency == pytest.approx(ship["open_water_efficiency"], rel=2e-4)
     assert power.brake == pytest.approx(1e3 * ship["shaft_power"], rel=2e-4)
+
+
+def test_the_command_that_validates_shows_them() -> None:
+    shown = list(checks())
+    assert len(shown) == 5
+    assert all(check.passed for check in shown)
