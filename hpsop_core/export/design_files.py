@@ -20,6 +20,7 @@ from hpsop_core.export import tables
 from hpsop_core.export.formats import USUAL_FORMATS, checked_formats
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.propeller.propeller import Propeller
+from hpsop_core.geometry.propeller.surface import EDGE_THICKNESS_RATIO
 from hpsop_core.runs.reader import RunReader
 from hpsop_core.version import __version__
 
@@ -33,7 +34,7 @@ stands in its place behind the hull. (design.glb alone follows glTF: y up, starb
 {files}
 The surfaces are the very ones that were computed: the NURBS leave the evaluated hull by at most {deviation:.2g} m (the
 longitudinal shift is refitted), the meshes of hull.stl enclose the hull to its deck. Root fillets of the blades are in
-the meshes only.
+the meshes only. Trailing edges and tips of the blades are {edge:.2g} m thick (the solvers' panels close to nothing).
 {warnings}"""
 
 _MEANING = {
@@ -41,8 +42,8 @@ _MEANING = {
     "propeller.stl": "blades, fillets, hub and cap, one closed solid, in its place",
     "design.glb": "hull and propeller for viewers",
     "design.3dm": "rational NURBS surfaces of hull (both sides), deck, flat ends, blades and hub, on layers",
-    "design.step": "the hull as a closed solid, faces named; millimetres",
-    "design.iges": "the same as IGES, a manifold solid (entity 186); millimetres",
+    "design.step": "hull and propeller as a closed solid each, faces named; millimetres",
+    "design.iges": "the same as IGES, manifold solids (entity 186); millimetres",
     "lines.dxf": "stations, waterlines, buttocks, profile (port side) and blade sections as 3D polylines",
     "offsets.csv": "half-breadths; 'hpsop resistance --offsets offsets.csv' reads it again",
     "propeller.csv": "radial table; 'hpsop open-water --geometry propeller.csv' reads it again",
@@ -188,6 +189,7 @@ def _write(design: _Design, folder: Path, formats: Sequence[str]) -> list[Path]:
         version=__version__,
         files="".join(f"{file.name:<18s}{_MEANING[file.name]}\n" for file in made),
         deviation=max(deviation, 1e-6),
+        edge=EDGE_THICKNESS_RATIO * design.propeller.diameter,
         warnings="".join(f"\nWarning: {text}\n" for text in design.evaluation.warnings),
     )
     readme = folder / "README.txt"
@@ -197,19 +199,20 @@ def _write(design: _Design, folder: Path, formats: Sequence[str]) -> list[Path]:
 
 def _write_surfaces(design: _Design, folder: Path, formats: Sequence[str]) -> float:
     """The formats made of NURBS surfaces; the hull's largest deviation in m."""
-    from hpsop_core.export.surfaces import design_surfaces, hull_surfaces
+    from hpsop_core.export.surfaces import design_surfaces
 
     title = _title(design)
+    surfaces, deviation = design_surfaces(design.hull, design.propeller)
     if "3dm" in formats:
         from hpsop_core.export.rhino import write_3dm
 
-        surfaces, _ = design_surfaces(design.hull, design.propeller)
         write_3dm(folder / "design.3dm", surfaces, title)
-    hull_parts, deviation = hull_surfaces(design.hull)
     if {"step", "iges"} & set(formats):
-        from hpsop_core.export.solids import sewn_solid, write_iges, write_step
+        from hpsop_core.export.solids import propeller_solid, sewn_solid, write_iges, write_step
 
-        solids = (sewn_solid("hull", hull_parts),)
+        of_propeller = [part for part in surfaces if part.group == "propeller"]
+        of_hull = [part for part in surfaces if part.group != "propeller"]
+        solids = (sewn_solid("hull", of_hull), propeller_solid(of_propeller))
         if "step" in formats:
             write_step(folder / "design.step", solids, title)
         if "iges" in formats:

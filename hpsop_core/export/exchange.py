@@ -29,7 +29,8 @@ def to_geomdl(shape: Hull | Propeller) -> dict[str, Any]:
 
     Args:
         shape: a hull gives both sides of every patch with deck and flat ends ("main port", "main deck starboard"), in
-            ship axes; a propeller its blades and hub ("blade 1", "hub"), in propeller axes (docs/conventions.md).
+            ship axes; a propeller the faces of its blades and hub ("blade 1 back", "hub"), in propeller axes
+            (docs/conventions.md).
 
     Returns:
         Name -> surface over the unit square, m.

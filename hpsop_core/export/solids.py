@@ -66,6 +66,44 @@ def sewn_solid(name: str, parts: Sequence[NamedSurface]) -> NamedSolid:
     )
 
 
+def propeller_solid(parts: Sequence[NamedSurface]) -> NamedSolid:
+    """Blades and hub as one solid: each sewn from its faces ("blade 1 back", "hub"), then joined. Without fillets.
+
+    Raises:
+        SolverFailure: they do not make one valid body.
+    """
+    from OCP.BRepAlgoAPI import BRepAlgoAPI_Fuse
+    from OCP.collections import List_TopoDS_Shape
+    from OCP.TopAbs import TopAbs_ShapeEnum
+    from OCP.TopExp import TopExp_Explorer
+
+    bodies: dict[str, list[NamedSurface]] = {}
+    for part in parts:
+        words = part.name.split()
+        bodies.setdefault(" ".join(words[:2]) if words[0] == "blade" else "hub", []).append(part)
+    hub = sewn_solid("hub", bodies.pop("hub"))
+    blades = [sewn_solid(name, own) for name, own in bodies.items()]
+    join = BRepAlgoAPI_Fuse()
+    for given, solids in ((join.SetArguments, [hub]), (join.SetTools, blades)):
+        shapes = List_TopoDS_Shape()
+        for solid in solids:
+            shapes.Append(solid.shape)
+        given(shapes)
+    join.Build()
+    found = TopExp_Explorer(join.Shape(), TopAbs_ShapeEnum.TopAbs_SOLID)
+    if not join.IsDone() or not found.More() or not is_valid(found.Current()):
+        raise SolverFailure("export", "blades and hub of the propeller do not make one solid; take 3dm")
+    solid = found.Current()
+    found.Next()
+    if found.More():
+        raise SolverFailure("export", "a blade of the propeller does not touch its hub; take 3dm")
+    faces: list[tuple[str, str, Any]] = []
+    for name, group, face in (face for body in (hub, *blades) for face in body.faces):
+        kept = list(join.Modified(face)) or ([] if join.IsDeleted(face) else [face])
+        faces.extend((name, group, part) for part in kept)
+    return NamedSolid("propeller", solid, tuple(faces))
+
+
 def is_valid(shape: Any) -> bool:
     """Whether OpenCASCADE's own check finds nothing wrong with a shape."""
     from OCP.BRepCheck import BRepCheck_Analyzer

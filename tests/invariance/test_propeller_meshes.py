@@ -107,8 +107,8 @@ def test_roots_that_meet_are_refused() -> None:
 def test_blade_nurbs_keeps_the_sections(blades: int, area: float) -> None:
     propeller = propeller_family(load_propeller(), 9.0, blades, 1.0, area)
     blade = blade_nurbs(propeller)
-    # 0.2 mm on each metre of the diameter is finer than ISO 484 class S asks of a blade's sections
-    assert blade.largest_deviation < 2e-4 * 9.0
+    # 0.1 mm on each metre of the diameter is finer than ISO 484 class S asks of a blade's sections
+    assert blade.largest_deviation < 1e-4 * 9.0
     points = hub_nurbs(propeller).evaluate(np.linspace(0.0, 1.0, 40), np.linspace(0.0, 1.0, 33))
     radius = np.hypot(points[..., 1], points[..., 2])
     # conics: no error but rounding (whose root stands at the pole of the cap)
@@ -120,14 +120,16 @@ def test_surfaces_stand_where_the_mesh_stands() -> None:
     hull = load_parent_hull().transform(355.0, 51.0, 14.5)
     propeller = propeller_family(load_propeller(), 9.0, 4)
     surfaces = propeller_surfaces(propeller, propeller_placement(hull, propeller))
-    assert sorted(surfaces) == ["blade 1", "blade 2", "blade 3", "blade 4", "hub"]
+    faces = ("back", "face", "trailing edge", "tip", "root")
+    assert set(surfaces) == {f"blade {k} {face}" for k in range(1, 5) for face in faces} | {"hub", "hub forward face"}
     mesh = propeller_mesh(propeller, "export")
     mesh.apply_transform(propeller_placement(hull, propeller))
     for name, surface in surfaces.items():
         points = surface.evaluate(np.linspace(0.3, 1.0, 9), np.linspace(0.0, 1.0, 9)).reshape(-1, 3)
-        # vertices of the export mesh are at most some 0.15 m apart, but the hub has none under the roots, 0.6 m thick
+        # vertices of the export mesh are at most some 0.15 m apart, but the hub has none under the roots, 0.6 m
+        # thick, nor between rim and axis of its forward face, 0.77 m
         distance = np.min(np.linalg.norm(mesh.vertices[:, None] - points, axis=2), axis=0)
-        assert distance.max() < (0.35 if name == "hub" else 0.15), name
+        assert distance.max() < (0.4 if "hub" in name or "root" in name else 0.15), name
 
 
 def test_hub_stands_on_the_boss() -> None:

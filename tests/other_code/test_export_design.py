@@ -87,7 +87,7 @@ def test_opennurbs_reads_the_same_surfaces(files: Path, hull: Hull, propeller: P
     assert np.allclose(radius, 0.5 * propeller.diameter * propeller.hub_ratio, rtol=1e-9)
     layers = [layer.Name for layer in model.Layers]
     on = {item.Attributes.Name: layers[item.Attributes.LayerIndex] for item in model.Objects}
-    assert on["main port"] == "hull underwater" and on["blade 1"] == "propeller"
+    assert on["main port"] == "hull underwater" and on["blade 1 back"] == "propeller"
     assert on["topsides_mid deck port"] == "hull flat ends"
 
 

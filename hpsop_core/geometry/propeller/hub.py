@@ -11,7 +11,7 @@ from functools import lru_cache
 import numpy as np
 
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.propeller.propeller import Propeller
+from hpsop_core.geometry.propeller.propeller import BladeSections, Propeller
 from hpsop_core.geometry.propeller.sections import cosine_chord_fractions
 from hpsop_core.geometry.propeller.surface import cylinder_points, section_points
 from hpsop_core.typing_aliases import Array
@@ -66,33 +66,37 @@ def root_contour(propeller: Propeller, fillet_offset: float, points: int = _OUTL
     Returns:
         (x, theta), each (2 points - 1,); the last is the first.
     """
-    hub = np.array([propeller.hub_ratio])
-    return section_contour(propeller, hub, np.array([fillet_offset]), cosine_chord_fractions(points), squeeze=True)
-
-
-def section_contour(
-    propeller: Propeller, radius_ratio: Array, offset: Array, chord_fraction: Array, squeeze: bool = False
-) -> tuple[Array, Array]:
-    """Closed outlines of sections, each pushed outwards by its own ``offset`` (nr,): (x, theta), (nr, 2 nc - 1)."""
-    sections = propeller.table.at(radius_ratio)
-    back_s, back_eta = section_points(sections, chord_fraction, True)
-    face_s, face_eta = section_points(sections, chord_fraction, False)
+    sections = propeller.table.at(np.array([propeller.hub_ratio]))
+    fractions = cosine_chord_fractions(points)
+    back_s, back_eta = section_points(sections, fractions, True)
+    face_s, face_eta = section_points(sections, fractions, False)
     along = np.concatenate([back_s[:, ::-1], face_s[:, 1:]], axis=1)
     across = np.concatenate([back_eta[:, ::-1], face_eta[:, 1:]], axis=1)
+    x, theta = pushed_outwards(sections, along, across, np.array([fillet_offset]))
+    return x[0], theta[0]
+
+
+def pushed_outwards(sections: BladeSections, along: Array, across: Array, offset: Array) -> tuple[Array, Array]:
+    """Closed outlines of sections (nr, m), the last point the first, each pushed outwards by ``offset`` (nr,).
+
+    From the trailing edge over the back to the leading edge and over the face.
+
+    Returns:
+        (x, theta), each (nr, m), wrapped on the cylinders of their radii.
+    """
     ds, de = _periodic_difference(along), _periodic_difference(across)
     length = np.hypot(ds, de)
     # over the back towards the leading edge the outside is on the right of the direction of travel
     along = along + offset[:, None] * de / length
     across = across - offset[:, None] * ds / length
-    x, theta = cylinder_points(
-        radius_ratio[:, None],
+    return cylinder_points(
+        sections.radius_ratio[:, None],
         sections.pitch_angle[:, None],
         sections.skew[:, None],
         sections.rake_ratio[:, None],
         along,
         across,
     )
-    return (x[0], theta[0]) if squeeze else (x, theta)
 
 
 def _periodic_difference(values: Array) -> Array:

@@ -13,10 +13,11 @@ from typing import Literal
 import numpy as np
 import trimesh
 
-from hpsop_core.geometry.propeller.hub import Hub, check_root_gap, hub_of, section_contour
+from hpsop_core.geometry.propeller.hub import Hub, check_root_gap, hub_of, pushed_outwards
+from hpsop_core.geometry.propeller.nurbs import blade_parameters, blade_surface
 from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.geometry.propeller.sections import cosine_chord_fractions
-from hpsop_core.geometry.propeller.surface import blade_cylindrical, finite_tip_sections, to_cartesian
+from hpsop_core.geometry.propeller.surface import finite_edge_points, rotate_blade, to_cartesian
 from hpsop_core.typing_aliases import Array, IntArray
 
 Resolution = Literal["drag", "view", "export"]
@@ -89,12 +90,12 @@ def _parts(blade_count: int, resolution: Resolution) -> dict[str, tuple[IntArray
 
 
 def _blade_rings(counts: _Counts) -> int:
-    return counts.fillet + counts.span
+    return counts.fillet + counts.span + 1
 
 
 def _blade_size(counts: _Counts) -> int:
-    """Vertices of one blade: rings of 2 n points, and a tip line of n + 1."""
-    return _blade_rings(counts) * 2 * counts.chord + counts.chord + 1
+    """Vertices of one blade: rings of 2 n points, and the n - 2 in the middle of the tip's edge."""
+    return _blade_rings(counts) * 2 * counts.chord + counts.chord - 2
 
 
 def _sector_size(counts: _Counts) -> int:
@@ -106,51 +107,64 @@ def _vertices(propeller: Propeller, counts: _Counts) -> Array:
     """All vertices in tip radii: blades, sectors of the hub, its two ends on the axis."""
     check_root_gap(propeller)
     hub = hub_of(propeller)
-    x, radius, theta, base_x, base_theta = _blade(propeller, hub, counts)
+    key, base_x, base_theta = _blade(propeller, hub, counts)
     sector_x, sector_radius, sector_theta = _sector(propeller, hub, counts, base_x, base_theta)
-    turn = 2.0 * np.pi * np.arange(propeller.blade_count)[:, None] / propeller.blade_count
-    blades = to_cartesian(x, radius, theta + turn).reshape(-1, 3)
+    count = propeller.blade_count
+    turn = 2.0 * np.pi * np.arange(count)[:, None] / count
+    blades = np.concatenate([rotate_blade(key, k, count) for k in range(count)])
     sectors = to_cartesian(sector_x, sector_radius, sector_theta + turn).reshape(-1, 3)
     ends = np.array([[hub.face_x, 0.0, 0.0], [hub.cap_x, 0.0, 0.0]])
     return np.concatenate([blades, sectors, ends])
 
 
-def _blade(propeller: Propeller, hub: Hub, counts: _Counts) -> tuple[Array, Array, Array, Array, Array]:
-    """Vertices of the key blade (x, radius, theta), and the ring on the hub (x, theta), (2 n,)."""
+def _blade(propeller: Propeller, hub: Hub, counts: _Counts) -> tuple[Array, Array, Array]:
+    """Vertices of the key blade (m, 3), and the ring on the hub (x, theta), each (2 n,).
+
+    A ring begins in the middle of the trailing edge and goes over the back to the leading edge (point n) and the face.
+    """
     n = counts.chord
     fillet = hub.fillet_radius
     # circular fillet: at height h over the hub the outline stands off by d
     angle = 0.5 * np.pi * np.arange(counts.fillet) / counts.fillet
     fillet_radius = hub.radius + fillet * (1.0 - np.cos(angle))
-    offset = fillet * (1.0 - np.sin(angle))
-    fractions = cosine_chord_fractions(n + 1)
-    fine_x, fine_theta = section_contour(propeller, fillet_radius, offset, cosine_chord_fractions(4 * n + 1))
+    fine_x, fine_theta = _root_contours(propeller, fillet_radius, fillet * (1.0 - np.sin(angle)), 4 * (n - 1) + 1)
+    period = 8 * (n - 1) + 2
     # On the hub the ring's points lie opposite each other in planes x = constant, so that the hub's rows cannot fold
     # round the blunt nose; up the fillet they slide to their places on the blade.
     base = _base_parameters(fine_x[0], n)
-    usual = 4.0 * np.arange(2 * n)
+    usual = np.concatenate([[0.0], 1.0 + 4.0 * np.arange(2 * n - 1)])
     slide = np.cos(angle)[:, None]
     position = base * slide + usual * (1.0 - slide)
-    index = np.arange(-4, 8 * n + 5)
+    index = np.arange(-4, period + 5)
     ring_x = np.zeros((counts.fillet, 2 * n))
     ring_theta = np.zeros_like(ring_x)
     for k in range(counts.fillet):
-        wrapped = np.mod(index, 8 * n)
+        wrapped = np.mod(index, period)
         ring_x[k] = np.interp(position[k], index, fine_x[k][wrapped])
         ring_theta[k] = np.interp(position[k], index, fine_theta[k][wrapped])
     start = hub.radius + fillet
     outward = np.sqrt(1.0 - start) * np.arange(counts.span, -1, -1) / counts.span
     radii = 1.0 - outward**2
     radii[0], radii[-1] = start, 1.0
-    sections = finite_tip_sections(propeller.table, radii)
-    back_x, back_theta = blade_cylindrical(sections, fractions, True)
-    face_x, face_theta = blade_cylindrical(sections, fractions, False)
-    loop_x = np.concatenate([back_x[:, ::-1], face_x[:, 1:-1]], axis=1)
-    loop_theta = np.concatenate([back_theta[:, ::-1], face_theta[:, 1:-1]], axis=1)
-    x = np.concatenate([ring_x.ravel(), loop_x[:-1].ravel(), back_x[-1, ::-1]])
-    theta = np.concatenate([ring_theta.ravel(), loop_theta[:-1].ravel(), back_theta[-1, ::-1]])
-    rings = np.concatenate([np.repeat(fillet_radius, 2 * n), np.repeat(radii[:-1], 2 * n), np.ones(n + 1)])
-    return x, rings, theta, ring_x[0], ring_theta[0]
+    grid = blade_surface(propeller).evaluate(blade_parameters(propeller, radii), np.linspace(0.0, 1.0, 2 * n - 1))
+    grid /= 0.5 * propeller.diameter
+    rings = np.concatenate([0.5 * (grid[:, :1] + grid[:, -1:]), grid], axis=1)
+    tip = 0.5 * (rings[-1, 2:n] + rings[-1, -2:n:-1])
+    root = to_cartesian(ring_x, fillet_radius[:, None], ring_theta)
+    return np.concatenate([root.reshape(-1, 3), rings.reshape(-1, 3), tip]), ring_x[0], ring_theta[0]
+
+
+def _root_contours(propeller: Propeller, radius_ratio: Array, offset: Array, points: int) -> tuple[Array, Array]:
+    """Closed outlines near the root, each pushed outwards by its own ``offset``: (x, theta), (nr, 2 points + 1).
+
+    From the middle of the trailing edge over the back, ``points`` on each side.
+    """
+    sections = propeller.table.at(radius_ratio)
+    s, back, face = finite_edge_points(sections, cosine_chord_fractions(points))
+    middle = 0.5 * (back[:, -1:] + face[:, -1:])
+    along = np.concatenate([s[:, -1:], s[:, ::-1], s[:, 1:], s[:, -1:]], axis=1)
+    across = np.concatenate([middle, back[:, ::-1], face[:, 1:], middle], axis=1)
+    return pushed_outwards(sections, along, across, offset)
 
 
 def _base_parameters(x: Array, n: int) -> Array:
@@ -158,7 +172,7 @@ def _base_parameters(x: Array, n: int) -> Array:
 
     Ring point 0 is the outline's last along the shaft, point n its first; m and 2 n - m have the same x.
     """
-    # the fine outline is closed: 8 n intervals from the trailing edge over the back
+    # the fine outline is closed and begins at the trailing edge, over the back
     count = x.size - 1
     first, last = int(np.argmin(x[:-1])), int(np.argmax(x[:-1]))
     if last > count // 2:
@@ -218,9 +232,11 @@ def propeller_topology(blade_count: int, resolution: Resolution = "view") -> Pro
 
     rings = _blade_rings(counts)
     grid = np.arange(rings * ring).reshape(rings, ring)
-    # the tip line closes the last ring: back and face meet in the same points
+    # the middle of the tip's edge closes the last ring, with the ring's own points 0 and n at its ends
     m = np.arange(ring)
-    tip = rings * ring + np.where(m <= n, m, ring - m)
+    inwards = np.minimum(m, ring - m)
+    tip = np.where(m == n, (rings - 1) * ring + n, rings * ring - 2 + inwards)
+    tip[inwards < 2] = (rings - 1) * ring
     grid = np.concatenate([grid, tip[None, :]])
     grid = np.concatenate([grid, grid[:, :1]], axis=1)
     one_blade = _quads(grid)

@@ -1,27 +1,36 @@
-"""Blade and hub as NURBS surfaces, for exchange with CAD.
+"""Blade and hub as NURBS surfaces: what is drawn, meshed and exchanged with CAD.
 
-Metres, propeller axes. The blade's surface runs from a little inside the hub to the finite tip; its trailing edge is
-closed and sharp, the fillet at the root is in the meshes only.
+Metres, propeller axes. The blade's surface runs from a little inside the hub to the tip. Tip and trailing edge have a
+thickness (``EDGE_THICKNESS_RATIO``); the solvers' panels, which need a sharp trailing edge, come from the radial table
+that this surface interpolates. The fillet at the root is in the meshes only.
 """
 
 from __future__ import annotations
 
 from dataclasses import dataclass, replace
+from functools import lru_cache
 
 import numpy as np
 from scipy.interpolate import make_interp_spline
 
-from hpsop_core.geometry.nurbs import NurbsSurface
+from hpsop_core.geometry.nurbs import NurbsSurface, basis_matrix, clamped_knots
 from hpsop_core.geometry.propeller.hub import hub_of
 from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.geometry.propeller.sections import cosine_chord_fractions
-from hpsop_core.geometry.propeller.surface import blade_points, finite_tip_sections, rotate_blade
+from hpsop_core.geometry.propeller.surface import (
+    cylinder_points,
+    finite_edge_points,
+    finite_tip_sections,
+    rotate_blade,
+    to_cartesian,
+)
+from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array
 
 _DEGREE = 3
 _ROOT_DEPTH = 0.9
-_SPAN_STATIONS = 49
-_CHORD_STATIONS = 33
+_SPAN_STATIONS = 61
+_CHORD_STATIONS = 41
 
 
 @dataclass(frozen=True, eq=False)
@@ -46,43 +55,94 @@ def _radii(propeller: Propeller, count: int) -> Array:
 
 
 def blade_outlines(propeller: Propeller, radii: Array, chord_points: int) -> Array:
-    """Closed sections of the key blade at r/R = radii (nr,): (nr, 2 nc - 1, 3) in m, propeller axes.
+    """Sections of the key blade at r/R = radii (nr,): (nr, 2 nc - 1, 3) in m, propeller axes.
 
-    From the trailing edge along the back to the leading edge and along the face back again.
+    From the back's corner of the trailing edge along the back to the leading edge and along the face to its corner.
     """
     sections = finite_tip_sections(propeller.table, radii)
-    fractions = cosine_chord_fractions(chord_points)
-    back, face = blade_points(sections, fractions, True), blade_points(sections, fractions, False)
-    return np.concatenate([back[:, ::-1], face[:, 1:]], axis=1) * (0.5 * propeller.diameter)
+    along, back, face = finite_edge_points(sections, cosine_chord_fractions(chord_points))
+    x, theta = cylinder_points(
+        radii[:, None],
+        sections.pitch_angle[:, None],
+        sections.skew[:, None],
+        sections.rake_ratio[:, None],
+        np.concatenate([along[:, ::-1], along[:, 1:]], axis=1),
+        np.concatenate([back[:, ::-1], face[:, 1:]], axis=1),
+    )
+    return to_cartesian(x, radii[:, None], theta) * (0.5 * propeller.diameter)
+
+
+@lru_cache(maxsize=64)
+def blade_surface(propeller: Propeller) -> NurbsSurface:
+    """The key blade, m, propeller axes: a bicubic B-spline through 61 sections of 81 points.
+
+    u runs from inside the hub to the tip with r/R = 1 - (1 - r0)(1 - u)^2, v from the trailing edge over the back to
+    the leading edge (v = 1/2) and over the face to the trailing edge, even in the angle of the cosine spacing.
+    """
+    grid = blade_outlines(propeller, _radii(propeller, _SPAN_STATIONS), _CHORD_STATIONS)
+    knots_u, inverse_u = _interpolation(_SPAN_STATIONS)
+    knots_v, inverse_v = _interpolation(2 * _CHORD_STATIONS - 1)
+    with one_blas_thread():
+        control = np.einsum("iu,uvk,jv->ijk", inverse_u, grid, inverse_v, optimize=True)
+    return NurbsSurface(_DEGREE, _DEGREE, knots_u, knots_v, control, np.ones(control.shape[:2]))
+
+
+def blade_parameters(propeller: Propeller, radius_ratio: Array) -> Array:
+    """u of ``blade_surface`` at r/R."""
+    start = _ROOT_DEPTH * propeller.hub_ratio
+    return 1.0 - np.sqrt(np.clip((1.0 - radius_ratio) / (1.0 - start), 0.0, 1.0))
 
 
 def blade_nurbs(propeller: Propeller) -> BladeSurface:
-    """Interpolate the key blade by a bicubic B-spline surface and measure how far it is off in between."""
-    grid = blade_outlines(propeller, _radii(propeller, _SPAN_STATIONS), _CHORD_STATIONS)
-    knots_u, along = _interpolate(grid)
-    knots_v, across = _interpolate(np.swapaxes(along, 0, 1))
-    control = np.swapaxes(across, 0, 1)
-    surface = NurbsSurface(_DEGREE, _DEGREE, knots_u, knots_v, control, np.ones(control.shape[:2]))
+    """The key blade's surface, and how far it is from the sections midway between the interpolated ones."""
+    surface = blade_surface(propeller)
     # twice as many sections and points: half of them lie midway between the interpolated ones
     fine = blade_outlines(propeller, _radii(propeller, 2 * _SPAN_STATIONS - 1), 2 * _CHORD_STATIONS - 1)
     u, v = np.linspace(0.0, 1.0, fine.shape[0]), np.linspace(0.0, 1.0, fine.shape[1])
     points, along_u, along_v = surface.derivatives(u, v)
     normal = np.cross(along_u, along_v)
     length = np.linalg.norm(normal, axis=-1)
-    # a point that slid along the surface is no error of the shape; at the very tip edge there is no normal
+    # a point that slid along the surface is no error of the shape
     deviation = np.abs(np.sum((points - fine) * normal, axis=-1)) / np.where(length > 0.0, length, 1.0)
     return BladeSurface(surface, float(np.max(deviation)))
 
 
-def _interpolate(values: Array) -> tuple[Array, Array]:
-    """Clamped cubic spline through ``values`` along axis 0 at equal parameters: knots, control points."""
-    spline = make_interp_spline(np.linspace(0.0, 1.0, values.shape[0]), values, k=_DEGREE, axis=0)
-    knots = np.array(spline.t, dtype=np.float64)
-    return knots, np.asarray(spline.c, dtype=np.float64)
+@lru_cache(maxsize=8)
+def _interpolation(count: int) -> tuple[Array, Array]:
+    """Knots of the clamped cubic spline through ``count`` values at equal parameters, and the matrix to its control."""
+    at = np.linspace(0.0, 1.0, count)
+    knots = np.array(make_interp_spline(at, at, k=_DEGREE).t, dtype=np.float64)
+    inverse = np.asarray(np.linalg.inv(basis_matrix(knots, _DEGREE, at)), dtype=np.float64)
+    inverse.setflags(write=False)
+    return knots, inverse
+
+
+def blade_faces(propeller: Propeller) -> dict[str, NurbsSurface]:
+    """The key blade as the faces of a closed body: "back", "face", "trailing edge", "tip" and, in the hub, "root"."""
+    from geomdl.operations import split_surface_v
+
+    halves = split_surface_v(blade_surface(propeller).to_geomdl(), 0.5)
+    first, second = (NurbsSurface.from_geomdl(half) for half in halves)
+    # From the trailing edge to the leading one on both sides: the knots are the same but for rounding.
+    face = replace(second, control_points=second.control_points[:, ::-1], knots_v=first.knots_v)
+    edge, last = first.control_points[:, 0], face.control_points[:, 0]
+    return {
+        "back": first,
+        "face": face,
+        "trailing edge": _ruled(edge, last, first.knots_u),
+        "tip": _ruled(first.control_points[-1], face.control_points[-1], first.knots_v),
+        "root": _ruled(first.control_points[0], face.control_points[0], first.knots_v),
+    }
+
+
+def _ruled(first: Array, second: Array, knots: Array) -> NurbsSurface:
+    """Straight lines between two cubic splines on the same knots."""
+    control = np.stack([first, second], axis=1)
+    return NurbsSurface(_DEGREE, 1, knots, clamped_knots([], 1), control, np.ones(control.shape[:2]))
 
 
 def hub_nurbs(propeller: Propeller) -> NurbsSurface:
-    """The hub from its forward face (open) to the tip of the boss cap: u along the shaft, v round it, without error.
+    """The hub from the rim of its forward face to the tip of the boss cap: u along the shaft, v round it, exact.
 
     Chamfer, cylinder and elliptic cap are one conic each, the circle round the shaft is four.
     """
@@ -117,19 +177,25 @@ def hub_nurbs(propeller: Propeller) -> NurbsSurface:
 
 
 def propeller_surfaces(propeller: Propeller, placement: Array | None = None) -> dict[str, NurbsSurface]:
-    """All blades ("blade 1" is the key blade) and the "hub" as NURBS surfaces.
+    """All blades ("blade 1 back" is of the key blade) and the "hub" with its "hub forward face" as NURBS surfaces.
 
     Args:
         propeller: the propeller.
         placement: a 4 x 4 matrix, for example ``propeller_placement(hull, propeller)``; None leaves propeller axes.
     """
-    key = blade_nurbs(propeller).surface
-    blades = propeller.blade_count
+    blades, key = propeller.blade_count, blade_faces(propeller)
     surfaces = {
-        f"blade {k + 1}": replace(key, control_points=rotate_blade(key.control_points, k, blades))
+        f"blade {k + 1} {name}": replace(part, control_points=rotate_blade(part.control_points, k, blades))
         for k in range(blades)
+        for name, part in key.items()
     }
-    surfaces["hub"] = hub_nurbs(propeller)
+    hub = hub_nurbs(propeller)
+    # the forward face: straight lines from its rim to the axis
+    rim, weights = hub.control_points[0], hub.weights[0]
+    disc = np.stack([rim, rim * np.array([1.0, 0.0, 0.0])], axis=1)
+    both = np.stack([weights, weights], axis=1)
+    surfaces["hub"] = hub
+    surfaces["hub forward face"] = NurbsSurface(2, 1, hub.knots_v, clamped_knots([], 1), disc, both)
     if placement is None:
         return surfaces
     return {

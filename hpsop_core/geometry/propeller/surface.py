@@ -116,6 +116,30 @@ def finite_tip_sections(table: RadialTable, radius_ratio: Array) -> BladeSection
     return replace(sections, chord_ratio=chord, thickness_ratio=thickness)
 
 
+EDGE_THICKNESS_RATIO = 0.001
+"""Thickness over D of trailing edge and tip, and the least diameter of the nose, of meshes and CAD surfaces.
+
+A blade that closes to nothing can be neither milled nor meshed; 9 mm on a propeller of 9 m is what a yard leaves.
+"""
+
+
+def finite_edge_points(sections: BladeSections, chord_fraction: Array) -> tuple[Array, Array, Array]:
+    """Sections whose edges have a thickness: (s, eta of the back, eta of the face), each (nr, nc), in tip radii.
+
+    The half thickness is hypot(t yt, e g), with e half of ``EDGE_THICKNESS_RATIO`` and g a quarter circle of radius e
+    at the nose and 1 behind it: at the edges e, in the middle of a blade the table's own to a hundredth of e.
+    """
+    chord = 2.0 * sections.chord_ratio[:, None]
+    fraction = np.asarray(chord_fraction, dtype=np.float64)
+    edge = EDGE_THICKNESS_RATIO
+    along = chord * (fraction - 0.5)
+    nose = np.clip(1.0 - chord * fraction / edge, 0.0, 1.0)
+    own = chord * sections.thickness_ratio[:, None] * half_thickness(fraction)
+    half = np.hypot(own, edge * np.sqrt(1.0 - nose**2))
+    camber = chord * sections.camber_ratio[:, None] * mean_line(fraction)
+    return along, camber + half, camber - half
+
+
 def rotate_blade(points: Array, blade: int, blade_count: int) -> Array:
     """Points of the key blade (..., 3) turned to the place of blade number ``blade`` (0 is the key blade)."""
     angle = 2.0 * np.pi * blade / blade_count
