@@ -22,8 +22,14 @@ from hpsop_core.geometry.hull.input import HullFile, ReadOptions
 DIAMETER_TO_DRAFT, BASELINE_CLEARANCE = 0.62, 0.03
 # The second, slower condition, as a part of the service speed.
 SLOW = 0.9
-# What the solvers are made for.
+# What the solvers are made for; below the third number level 2's waves pass through zero, and level 1 alone is far too
+# high on full forms.
 FROUDE_LIMITS = (0.12, 0.34)
+LEAST_TRUSTED = 0.18
+_SLOW_SHIP = (
+    " At the {0:.3f} that suits such a fullness level 2 gives no waves: the speeds here are the slowest that can "
+    "be computed."
+)
 
 
 def usual_froude_number(block_coefficient: float) -> float:
@@ -76,6 +82,8 @@ def ready_case(
         buoyancy_centre_shift=0.0,
     )
     froude = usual_froude_number(told.block_coefficient)
+    slow = max(SLOW * froude, LEAST_TRUSTED)
+    speeds = (round(slow, 3), round(max(froude, slow / SLOW), 3))
     space = DesignSpace.around(initial.variables).as_dict()
     # Whatever is asked of the propeller, its area must be able to grow.
     space["expanded_area_ratio"] = (0.45, 1.0)
@@ -91,6 +99,7 @@ def ready_case(
         description=(
             f"Made by 'hpsop hull' for {Path(path).name}. Check the speeds (Froude numbers that suit CB "
             f"{told.block_coefficient:.3f}), the propeller and the bounds."
+            + (_SLOW_SHIP.format(froude) if speeds[1] > froude + 1e-3 else "")
         ),
         hull=hull,
         propeller=PropellerSection(geometry=propeller, geometry_blade_count=blade_count or 3)
@@ -98,7 +107,7 @@ def ready_case(
         else PropellerSection(),
         initial=initial,
         bounds=DesignSpace.from_bounds(space),
-        conditions=ConditionsSection(froude_numbers=(round(SLOW * froude, 3), round(froude, 3)), weights=(0.65, 0.35)),
+        conditions=ConditionsSection(froude_numbers=speeds, weights=(0.65, 0.35)),
         constraints=limits,
     )
 

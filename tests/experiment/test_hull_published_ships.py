@@ -7,6 +7,8 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hpsop_core.case.ready_case import ready_case
+from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.geometry.hull.input import ReadOptions, read_hull
 from tools.hull_campaign import LARGEST_ERROR, Variant, variants
 
@@ -56,3 +58,18 @@ def test_the_campaign_is_large_enough(campaign: dict[str, Variant]) -> None:
 def test_a_variant_comes_in(tmp_path: Path, campaign: dict[str, Variant], name: str) -> None:
     told = campaign[name].read(tmp_path).understood
     assert np.isclose(told.displaced_volume, campaign[name].volume, rtol=LARGEST_ERROR)
+
+
+@pytest.mark.parametrize(
+    ("file", "options"),
+    [("s60_cb060.csv", ReadOptions(length=121.92)), ("kvlcc2.csv", ReadOptions(length=320.0, draft=20.8))],
+)
+def test_the_ready_case_is_computed_at_both_levels(file: str, options: ReadOptions) -> None:
+    """From a file to feasible designs without a word more: a ship of CB 0.60 and one of 0.81."""
+    path = DATA / file
+    case = ready_case(read_hull(path, options), str(path), options)
+    for level in (1, 2):
+        result = evaluate(case, case.initial.variables, level)
+        assert result.ok, result.reason
+        assert result.feasible, result.constraints
+    assert case.bounds.project(case.initial.variables) == case.initial.variables

@@ -114,6 +114,12 @@ def transom_froude_number(froude_number: float, length: float, depth: float) -> 
     return float(froude_number * np.sqrt(length / depth))
 
 
+def _transom_depth(edge: Array, draft: float) -> float:
+    """How deep a transom's section (n, 3) is in the water, m; a post below it, in the centreplane, is no transom."""
+    broad = edge[:, 1] > 1e-3 * float(np.max(edge[:, 1]))
+    return draft - float(np.min(edge[broad, 2]))
+
+
 def _tail_points(edge: Array, draft: float, length: float, slowest: float | None) -> Array:
     """The closure behind a transom in the water: its section shrinks like 1 - s^2 towards a point in the waterline.
 
@@ -129,7 +135,7 @@ def _tail_points(edge: Array, draft: float, length: float, slowest: float | None
         SolverFailure: the transom is too wide for a tail of this hull's length, and not dry at the least speed.
     """
     half_breadth = float(edge[-1, 1])
-    depth = draft - float(np.min(edge[:, 2]))
+    depth = _transom_depth(edge, draft)
     room = float(edge[-1, 0]) + TAIL_REACH * length
     clears = 0.0 if slowest is None else transom_froude_number(slowest, length, depth)
     least = LEAST_TAIL_SLENDERNESS if clears < DRY_TRANSOM else LEAST_DRY_SLENDERNESS
@@ -213,7 +219,7 @@ def hull_panels(hull: Hull, lengthwise: int, girthwise: int, slowest: float | No
 
 def _transom_line(half_breadth: float, tail: Array, hull: Hull, slowest: float | None) -> str:
     """What is said of a transom in the water: its size, how it is closed, and whether it is dry."""
-    depth = hull.draft - float(np.min(tail[-1, :, 2]))
+    depth = _transom_depth(tail[-1], hull.draft)
     line = (
         f"transom {2 * half_breadth:.4g} m wide and {depth:.4g} m deep in the water: closed by a tail of "
         f"{float(tail[-1, -1, 0] - tail[0, -1, 0]):.4g} m in the wave calculation, whose waves count"
