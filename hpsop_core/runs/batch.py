@@ -165,18 +165,14 @@ class BatchEvaluator:
                 return
 
     def _start(self, job: _Job) -> bool:
-        candidate = job.candidate
-        if self._warm_up is not None:
-            # Before its clock runs: a worker that was just started has yet to load, and maybe to compile, the solvers.
-            self._workers.warm(
-                candidate.level, self._control, warm_up_task, self._warm_up, self._case, candidate.level, job.reference
-            )
-        arguments = (self._evaluate, self._case, candidate.variables, candidate.level, job.reference)
         try:
-            future = self._workers.submit(evaluation_task, *arguments)
+            future = self._submitted(job)
+        except WorkersLostError:
+            self._queue_again(job)
+            raise
         except BrokenExecutor:
             # A worker died while it was idle: nobody here is to blame.
-            (self._suspects if job.deaths or job.timeouts else self._queue).appendleft(job)
+            self._queue_again(job)
             self._requeue()
             self._workers.rebuild()
             return False
@@ -186,11 +182,23 @@ class BatchEvaluator:
         self._under_way[future] = job
         return True
 
-    def _requeue(self) -> None:
-        jobs = sorted(self._under_way.values(), key=lambda job: job.number)
+    def _submitted(self, job: _Job) -> Future[str]:
+        candidate = job.candidate
+        if self._warm_up is not None:
+            # Before its clock runs: a worker that was just started has yet to load, and maybe to compile, the solvers.
+            self._workers.warm(
+                candidate.level, self._control, warm_up_task, self._warm_up, self._case, candidate.level, job.reference
+            )
+        arguments = (self._evaluate, self._case, candidate.variables, candidate.level, job.reference)
+        return self._workers.submit(evaluation_task, *arguments)
+
+    def _queue_again(self, job: _Job) -> None:
         # A suspect stays one.
-        self._suspects.extendleft(reversed([job for job in jobs if job.deaths or job.timeouts]))
-        self._queue.extendleft(reversed([job for job in jobs if not (job.deaths or job.timeouts)]))
+        (self._suspects if job.deaths or job.timeouts else self._queue).appendleft(job)
+
+    def _requeue(self) -> None:
+        for job in sorted(self._under_way.values(), key=lambda job: -job.number):
+            self._queue_again(job)
         self._under_way = {}
 
     def _collect(self, finished: Callable[[int, Candidate, str], None]) -> None:
@@ -244,8 +252,10 @@ class BatchEvaluator:
             if isinstance(error, (BrokenExecutor, CancelledError)):
                 broken = True
                 continue
-            if isinstance(error, WorkersLostError):
-                raise error
+            if isinstance(error, OSError) and not self._workers.blamable:
+                # Of the way to the cluster: ``evaluation_task`` lets none of its own out.
+                broken = True
+                continue
             job = self._under_way.pop(future)
             if error is None:
                 finished(job.number, job.candidate, future.result())

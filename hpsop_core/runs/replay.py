@@ -360,7 +360,6 @@ class RunDriver:
 
     def _computed_reference(self, level: int) -> str:
         """Computed by a worker like everything else: with one BLAS thread, and a crash there is not ours."""
-        reason = "its worker processes died"
         for _ in range(_REFERENCE_TRIES):
             workers = self._ready_workers()
             try:
@@ -371,20 +370,23 @@ class RunDriver:
                 done, text = future.result()
                 if done:
                     return str(text)
-                reason = str(text)
-                break
+                raise InputError(
+                    f"{self._case.name}: the initial design cannot be computed at level {level} ({text}); "
+                    "change [initial]"
+                )
             except (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError):
                 # Killed by the system, maybe, and not by the design: the same again decides.
                 if self._control.stopped:
                     raise _StoppedError from None
-                if workers.blamable:
+                try:
                     workers.rebuild()
-                else:
-                    reconnect(workers, self._control, self._lost, f"{workers.description} does not answer")
+                except WorkersLostError as error:
+                    reconnect(workers, self._control, self._lost, str(error))
             except WorkersLostError as error:
                 reconnect(workers, self._control, self._lost, str(error))
         raise InputError(
-            f"{self._case.name}: the initial design cannot be computed at level {level} ({reason}); change [initial]"
+            f"{self._case.name}: the initial design cannot be computed at level {level}: {_REFERENCE_TRIES} worker "
+            "processes died over it; is there memory enough? The same command tries again"
         )
 
     def _ready_workers(self) -> Workers:

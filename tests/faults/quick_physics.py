@@ -166,3 +166,39 @@ def counting(case: Case, variables: DesignVariables, level: int, reference: obje
     with open(marks / "calls", "a", encoding="utf-8") as stream:
         stream.write(f"{level} {[float(getattr(variables, name)) for name in VARIABLE_NAMES]!r}\n")
     return evaluate(case, variables, level, reference)
+
+
+def hanging_once(case: Case, variables: DesignVariables, level: int, reference: object, marks: Path) -> Evaluation:
+    """5 % of the designs hang the first time they are tried."""
+    mark = marks / f"{lot(variables, level):.12f}"
+    if not is_initial(case, variables) and lot(variables, level) < 0.05 and not mark.exists():
+        mark.touch()
+        time.sleep(3600)
+    return evaluate(case, variables, level, reference)
+
+
+_warm = False
+
+
+def warm_up(case: Case, level: int, reference: object) -> None:
+    """What compiling takes."""
+    global _warm
+    if not _warm:
+        time.sleep(2.0)
+        _warm = True
+
+
+def cold_and_dying_once(
+    case: Case, variables: DesignVariables, level: int, reference: object, marks: Path
+) -> Evaluation:
+    """Slow in a worker that was not warmed up; 5 % of the designs have their worker killed the first time."""
+    warm_up(case, level, reference)
+    return dying_once(case, variables, level, reference, marks)
+
+
+def killed_reference(case: Case, level: int, marks: Path, times: int) -> None:
+    """The system kills the worker that computes a reference, so many times a level."""
+    made = len(list(marks.glob(f"{level}-*")))
+    if made < times:
+        (marks / f"{level}-{made}").touch()
+        os.kill(os.getpid(), signal.SIGKILL)

@@ -201,7 +201,7 @@ if __name__ == "__main__":
     assert content(path) == content(whole)
 
 
-@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGKILL])
+@pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 def test_no_process_is_left_behind_on_any_exit(tmp_path: Path, how: signal.Signals) -> None:
     path = tmp_path / "run.hpsop"
     arguments = [sys.executable, str(HERE / "run_in_process.py"), str(path), "slower", "", "2", "8", "4", "2"]
