@@ -158,9 +158,9 @@ class BatchEvaluator:
                 job.alone = True
                 self._start(job)
             return
-        while self._queue and len(self._under_way) < self._workers.slots:
+        while self._queue and len(self._under_way) < (slots := self._workers.slots):
             job = self._queue.popleft()
-            job.alone = self._workers.slots == 1
+            job.alone = slots == 1
             if not self._start(job):
                 return
 
