@@ -118,13 +118,10 @@ class Draft:
         """
         for why in list(self.held.values()):
             raise InputError(why)
-        case = self.base
-        for section, fields in self.changes.items():
-            if section == "bounds":
-                case = case.with_bounds(fields)
-            else:
-                case = case.replaced(section, **fields)
-        return case
+        fields = {section: changes for section, changes in self.changes.items() if section != "bounds"}
+        case = self.base.changed(fields)
+        bounds = self.changes.get("bounds")
+        return case.with_bounds(bounds) if bounds else case
 
     # ---- over a restart of the server --------------------------------------------------------------------------------
     def saved(self) -> dict[str, Any]:

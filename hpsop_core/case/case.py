@@ -11,6 +11,7 @@ from typing import Any
 
 from hpsop_core.assets import asset_path
 from hpsop_core.case.fields import checked_value, read_section, rules, section_table, toml_text, unknown_name
+from hpsop_core.case.objectives import objective_named
 from hpsop_core.case.own_hull import own_dimensions
 from hpsop_core.case.sections import (
     OWN_FILES,
@@ -23,6 +24,7 @@ from hpsop_core.case.sections import (
     OptimizationSection,
     PropellerSection,
 )
+from hpsop_core.case.ship import EngineSection, LoadingSection
 from hpsop_core.case.variables import VARIABLE_TABLE, DesignSpace
 from hpsop_core.errors import InputError
 
@@ -37,6 +39,8 @@ SECTIONS: dict[str, type[Any]] = {
     "objectives": ObjectivesSection,
     "constraints": ConstraintsSection,
     "constants": ConstantsSection,
+    "loading": LoadingSection,
+    "engine": EngineSection,
     "optimization": OptimizationSection,
 }
 _TEXTS = ("name", "title", "description")
@@ -52,7 +56,8 @@ class Case:
     Attributes:
         name: one word; stands in every result.
         title, description: for people; the description says what the case assumes.
-        hull, propeller, initial, conditions, objectives, constraints, constants, optimization: see its sections.py.
+        hull, propeller, initial, conditions, objectives, constraints, constants, optimization: see sections.py.
+        loading, engine: see ship.py.
         bounds: the design space.
     """
 
@@ -67,6 +72,8 @@ class Case:
     objectives: ObjectivesSection = field(default_factory=ObjectivesSection)
     constraints: ConstraintsSection = field(default_factory=ConstraintsSection)
     constants: ConstantsSection = field(default_factory=ConstantsSection)
+    loading: LoadingSection = field(default_factory=LoadingSection)
+    engine: EngineSection = field(default_factory=EngineSection)
     optimization: OptimizationSection = field(default_factory=OptimizationSection)
 
     def __post_init__(self) -> None:
@@ -81,6 +88,15 @@ class Case:
         if limits.diameter_to_draft_lower > limits.diameter_to_draft_upper:
             raise InputError("constraints: diameter_to_draft_lower exceeds diameter_to_draft_upper; swap them")
         _ = self.initial.variables  # refuses proportions that no design may have
+        for name in (self.objectives.first, self.objectives.second):
+            self._check_objective(name)
+
+    def _check_objective(self, name: str) -> None:
+        """Refuse an objective for which the case does not state what it needs."""
+        for needed in objective_named(name).needs:
+            section, _, item = needed.partition(".")
+            if getattr(getattr(self, section), item) in (None, ()):
+                raise InputError(f"objectives: {name} needs [{section}] {item}; state it or choose another objective")
 
     @property
     def froude_numbers(self) -> tuple[float, ...]:
@@ -118,18 +134,32 @@ class Case:
         Raises:
             InputError: an unknown field or a refused value.
         """
-        known = rules(SECTIONS[section])
-        checked: dict[str, Any] = {}
-        for name, value in changes.items():
-            if name not in known:
-                raise unknown_name(name, list(known), section)
-            checked[name] = checked_value(value, known[name], f"{section}: {name}")
-        if section == "conditions":
-            # Speeds are stated in one way: whoever states them in the other one takes the first away.
-            for stated, other in (("froude_numbers", "speeds_knots"), ("speeds_knots", "froude_numbers")):
-                if checked.get(stated) and other not in checked:
-                    checked[other] = ()
-        return dataclasses.replace(self, **{section: dataclasses.replace(getattr(self, section), **checked)})
+        return self.changed({section: changes})
+
+    def changed(self, changes: Mapping[str, Mapping[str, object]]) -> Case:
+        """The same case with fields of several sections changed at once: what belongs together is judged together.
+
+        Args:
+            changes: new values by section and field.
+
+        Raises:
+            InputError: an unknown field or a refused value.
+        """
+        sections: dict[str, Any] = {}
+        for section, fields in changes.items():
+            known = rules(SECTIONS[section])
+            checked: dict[str, Any] = {}
+            for name, value in fields.items():
+                if name not in known:
+                    raise unknown_name(name, list(known), section)
+                checked[name] = checked_value(value, known[name], f"{section}: {name}")
+            if section == "conditions":
+                # Speeds are stated in one way: whoever states them in the other one takes the first away.
+                for stated, other in (("froude_numbers", "speeds_knots"), ("speeds_knots", "froude_numbers")):
+                    if checked.get(stated) and other not in checked:
+                        checked[other] = ()
+            sections[section] = dataclasses.replace(getattr(self, section), **checked)
+        return dataclasses.replace(self, **sections)
 
     def with_bounds(self, bounds: Mapping[str, tuple[float, float]]) -> Case:
         """The same case with some bounds changed; the others stay.

@@ -10,7 +10,7 @@ from collections.abc import Callable
 from dataclasses import dataclass
 
 from hpsop_core.case.case import Case
-from hpsop_core.case.design_numbers import DesignNumbers, InitialNumbers
+from hpsop_core.case.design_numbers import ConditionResult, DesignNumbers, InitialNumbers
 
 FEASIBILITY_TOLERANCE = 1e-6
 """A design whose every g is at most this is feasible: an optimum on a limit must not fail by rounding."""
@@ -29,6 +29,7 @@ class Constraint:
         violated: what is wrong where g > 0.
         asked: what a case asks by it, with the case's numbers; "" where the case does not ask it.
         value: g from a design's numbers, the initial design's and the case; None where it is not applied.
+        near: a design whose g is above minus this stands on the limit; None where there is no limit to stand on.
     """
 
     name: str
@@ -39,10 +40,15 @@ class Constraint:
     violated: str
     asked: Callable[[Case], str]
     value: Callable[[DesignNumbers, InitialNumbers, Case], float | None]
+    near: float | None = 0.005
 
     def is_violated(self, value: float | None) -> bool:
         """Whether a value of g breaks the constraint; one that is not applied never does."""
         return value is not None and value > FEASIBILITY_TOLERANCE
+
+    def is_active(self, value: float | None) -> bool:
+        """Whether a design stands on this limit, or beyond."""
+        return value is not None and self.near is not None and value > -self.near
 
 
 def _displacement(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float:
@@ -63,17 +69,98 @@ def _diameter_to_draft_asked(case: Case) -> str:
     return f"D/d from {limits.diameter_to_draft_lower:.2f} to {limits.diameter_to_draft_upper:.2f}"
 
 
+def _judged(design: DesignNumbers, case: Case) -> tuple[ConditionResult, ...]:
+    """The conditions at which cavitation is judged."""
+    return design.conditions if case.constraints.cavitation_conditions == "all" else design.conditions[:1]
+
+
+def _where_judged(case: Case) -> str:
+    return "at every condition" if case.constraints.cavitation_conditions == "all" else "at the first condition"
+
+
 def _cavitation(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float | None:
     if design.level < case.constraints.g3_level:
         return None
-    return design.conditions[0].required_expanded_area_ratio - design.propeller.expanded_area_ratio
+    required = max(condition.required_expanded_area_ratio for condition in _judged(design, case))
+    return required - design.propeller.expanded_area_ratio
 
 
 def _cavitation_asked(case: Case) -> str:
     limits = case.constraints
-    both = limits.g3_level == 1
-    where = "at both levels" if both else "at level 2 only: the search at level 1 does not see cavitation"
-    return f"expanded area ratio at least Keller's with K = {limits.keller_k:.2f} at the first condition, {where}"
+    late = "" if limits.g3_level == 1 else ", at level 2 only: the search at level 1 does not see cavitation"
+    whose = "Burrill's for 5 % back cavitation"
+    if limits.cavitation_criterion == "keller":
+        whose = f"Keller's with K = {limits.keller_k:.2f}"
+    return f"expanded area ratio at least {whose} {_where_judged(case)}{late}"
+
+
+def _back_cavitation(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float | None:
+    limit = case.constraints.back_cavitation_limit
+    shares = [condition.blade_cavitating_share for condition in _judged(design, case)]
+    known = [share for share in shares if share is not None]
+    return None if limit is None or not known else max(known) - limit
+
+
+def _back_cavitation_asked(case: Case) -> str:
+    limit = case.constraints.back_cavitation_limit
+    if limit is None:
+        return ""
+    return f"at most {100.0 * limit:.1f} % of the blades' back below vapour pressure {_where_judged(case)} (level 2)"
+
+
+def _tip_clearance(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float | None:
+    least = case.constraints.least_tip_clearance
+    return None if least is None else least - design.propeller.tip_clearance / design.propeller.diameter
+
+
+def _tip_clearance_asked(case: Case) -> str:
+    least = case.constraints.least_tip_clearance
+    return "" if least is None else f"the blade tips clear the hull by at least {100.0 * least:.1f} % of D"
+
+
+def _length(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float | None:
+    greatest = case.constraints.greatest_length
+    return None if greatest is None else design.hull.length / greatest - 1.0
+
+
+def _length_asked(case: Case) -> str:
+    greatest = case.constraints.greatest_length
+    return "" if greatest is None else f"length at most {greatest:.2f} m"
+
+
+def _breadth(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float | None:
+    greatest = case.constraints.greatest_breadth
+    return None if greatest is None else design.hull.breadth / greatest - 1.0
+
+
+def _breadth_asked(case: Case) -> str:
+    greatest = case.constraints.greatest_breadth
+    return "" if greatest is None else f"breadth at most {greatest:.2f} m"
+
+
+def _metacentric_height(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float | None:
+    own = design.hull.metacentric_height
+    return None if own is None else (case.loading.least_metacentric_height - own) / design.hull.breadth
+
+
+def _metacentric_height_asked(case: Case) -> str:
+    if case.loading.centre_of_gravity_height is None:
+        return ""
+    return f"metacentric height at least {case.loading.least_metacentric_height:.2f} m"
+
+
+def _engine(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float | None:
+    excesses = [condition.engine_excess for condition in design.conditions]
+    known = [excess for excess in excesses if excess is not None]
+    return max(known) if known else None
+
+
+def _engine_asked(case: Case) -> str:
+    rating, rate = case.engine.maximum_continuous_rating, case.engine.rated_rotation_rate_rpm
+    if rating is None:
+        return ""
+    torque = "" if rate is None else f", its torque at {rate:.1f} rpm and 105 % of that rate"
+    return f"every condition within the engine's {1e-6 * rating:.2f} MW{torque}"
 
 
 def _form(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float:
@@ -124,10 +211,10 @@ CONSTRAINTS: tuple[Constraint, ...] = (
     Constraint(
         name="cavitation",
         symbol="g₃",
-        label="cavitation (Keller)",
-        meaning="expanded area ratio that Keller's criterion requires at the first condition, minus the design's",
+        label="cavitation (blade area)",
+        meaning="expanded area ratio that cavitation_criterion requires at cavitation_conditions, minus the design's",
         applies="from level g3_level",
-        violated="blade area below Keller's requirement",
+        violated="blade area below what the cavitation criterion requires",
         asked=_cavitation_asked,
         value=_cavitation,
     ),
@@ -141,6 +228,7 @@ CONSTRAINTS: tuple[Constraint, ...] = (
         violated="the parent form does not carry this displacement or LCB",
         asked=_form_asked,
         value=_form,
+        near=None,
     ),
     Constraint(
         name="propeller_clearance",
@@ -151,5 +239,67 @@ CONSTRAINTS: tuple[Constraint, ...] = (
         violated="the propeller would cut the hull",
         asked=lambda case: "the blades clear the hull and stay above the baseline",
         value=_propeller_clearance,
+    ),
+    Constraint(
+        name="back_cavitation",
+        symbol="g₆",
+        label="back below vapour pressure",
+        meaning="share of the blades' back below vapour pressure at cavitation_conditions, minus back_cavitation_limit",
+        applies="at level 2, where back_cavitation_limit is stated",
+        violated="more of the blades' back cavitates than allowed",
+        asked=_back_cavitation_asked,
+        value=_back_cavitation,
+    ),
+    Constraint(
+        name="tip_clearance",
+        symbol="g₇",
+        label="tip clearance / D",
+        meaning="least_tip_clearance minus the blade tips' distance from the hull over D",
+        applies="where least_tip_clearance is stated",
+        violated="the blade tips come closer to the hull than allowed",
+        asked=_tip_clearance_asked,
+        value=_tip_clearance,
+    ),
+    Constraint(
+        name="length",
+        symbol="g₈",
+        label="length / greatest",
+        meaning="length over greatest_length, minus 1",
+        applies="where greatest_length is stated",
+        violated="the ship is longer than allowed",
+        asked=_length_asked,
+        value=_length,
+    ),
+    Constraint(
+        name="breadth",
+        symbol="g₉",
+        label="breadth / greatest",
+        meaning="breadth over greatest_breadth, minus 1",
+        applies="where greatest_breadth is stated",
+        violated="the ship is broader than allowed",
+        asked=_breadth_asked,
+        value=_breadth,
+    ),
+    Constraint(
+        name="metacentric_height",
+        symbol="g₁₀",
+        label="metacentric height",
+        meaning="least_metacentric_height minus GM, over the breadth",
+        applies="where centre_of_gravity_height is stated",
+        violated="metacentric height below the least",
+        asked=_metacentric_height_asked,
+        value=_metacentric_height,
+        near=0.001,
+    ),
+    Constraint(
+        name="engine",
+        symbol="g₁₁",
+        label="engine layout",
+        meaning="greatest of brake power, torque and rate of revolutions over the engine's limits, minus 1, over all "
+        "conditions",
+        applies="where maximum_continuous_rating is stated",
+        violated="a condition lies outside the engine's layout",
+        asked=_engine_asked,
+        value=_engine,
     ),
 )

@@ -5,6 +5,7 @@ They stand below the case, because a case names the objectives that are made of 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping
 from dataclasses import dataclass
 
@@ -23,6 +24,12 @@ class HullResult:
         longitudinal_centre_of_buoyancy: LCB forward of AP, in m.
         clipped: whether the asked displacement or LCB was more than the parent's form carries.
         booked_block_coefficient, booked_volume: affine form only: what the paper books, not what the geometry has.
+        depth: height of the deck above the baseline, in m.
+        displacement_mass: density times the geometry's displaced volume, in kg.
+        midship_coefficient, prismatic_coefficient, waterplane_coefficient: CM, CP, CWP.
+        centre_of_buoyancy_height, metacentric_radius, metacentre_height: KB, BM, KM = KB + BM, in m.
+        centre_of_gravity_height, metacentric_height: KG, GM = KM - KG, in m; None where the case states no KG.
+        lightship_mass, deadweight: in kg; None where the case states no lightship.
     """
 
     length: float
@@ -35,6 +42,18 @@ class HullResult:
     clipped: bool = False
     booked_block_coefficient: float | None = None
     booked_volume: float | None = None
+    depth: float | None = None
+    displacement_mass: float | None = None
+    midship_coefficient: float | None = None
+    prismatic_coefficient: float | None = None
+    waterplane_coefficient: float | None = None
+    centre_of_buoyancy_height: float | None = None
+    metacentric_radius: float | None = None
+    metacentre_height: float | None = None
+    centre_of_gravity_height: float | None = None
+    metacentric_height: float | None = None
+    lightship_mass: float | None = None
+    deadweight: float | None = None
 
 
 @dataclass(frozen=True)
@@ -79,7 +98,7 @@ class ConditionResult:
         thrust_coefficient, torque_coefficient: KT and KQ at J.
         open_water_efficiency: J KT/(2 pi KQ).
         delivered_power: 2 pi n Q in W.
-        required_expanded_area_ratio: Keller.
+        required_expanded_area_ratio: Keller's or Burrill's, as the case asks.
         wave_calibration: the factor on the solver's wave resistance.
         cavitation_number: (P0 + rho g h - Pv)/(1/2 rho (V_A^2 + (0.7 pi n D)^2)).
         reynolds_number_07R: chord Reynolds number at 0.7 R, full scale.
@@ -97,6 +116,10 @@ class ConditionResult:
         relative_rotative_efficiency: open-water torque over the torque behind the ship, at the same thrust.
         propulsive_efficiency: effective over delivered power.
         brake_power: of the engine, with sea margin and shaft losses, in W.
+        engine_load: brake power over the engine's MCR; None without an engine.
+        engine_excess: how far the point lies outside the engine's layout (greatest of power, torque and rate of
+            revolutions over their limits, minus 1); None without an engine.
+        fuel_rate: of the main engine, in kg/s; None without its consumption.
 
     Numbers that an earlier version neither kept nor implied are None in its files.
     """
@@ -138,6 +161,9 @@ class ConditionResult:
     relative_rotative_efficiency: float | None = None
     propulsive_efficiency: float | None = None
     brake_power: float | None = None
+    engine_load: float | None = None
+    engine_excess: float | None = None
+    fuel_rate: float | None = None
 
 
 @dataclass(frozen=True)
@@ -160,6 +186,15 @@ class DesignNumbers:
     conditions: tuple[ConditionResult, ...]
     baseline_clearance: float
     buoyancy_centre_missed: float
+
+    @property
+    def fuel_per_hour(self) -> float | None:
+        """Of the main engine over the operating profile (the weights are shares of time), in kg/h."""
+        rates = [condition.fuel_rate for condition in self.conditions]
+        if None in rates:
+            return None
+        pairs = zip(self.conditions, rates, strict=True)
+        return 3600.0 * math.fsum(condition.weight * rate for condition, rate in pairs if rate is not None)
 
     @property
     def displaced_volume(self) -> float:

@@ -97,7 +97,7 @@ def unknown_name(name: str, known: Sequence[str], where: str) -> InputError:
 
 
 def checked_value(value: object, rule: FieldRule, where: str) -> Any:
-    """``value`` as the field's type.
+    """``value`` as the field's type; None leaves an optional field out.
 
     Args:
         value: what the user gave.

@@ -27,6 +27,7 @@ class Objective:
         formula: as people write it.
         words: one clause that says what it is.
         value: the formula.
+        needs: fields of the case ("section.field") without which its numbers do not exist.
     """
 
     name: str
@@ -34,6 +35,7 @@ class Objective:
     formula: str
     words: str
     value: Formula
+    needs: tuple[str, ...] = ()
 
     @property
     def title(self) -> str:
@@ -83,10 +85,43 @@ def _displacement(design: DesignNumbers, initial: InitialNumbers) -> float:
     return initial.displaced_volume / design.displaced_volume
 
 
+def _over_profile(design: DesignNumbers, initial: InitialNumbers, name: str) -> tuple[float, float] | None:
+    """Sum of w x over the conditions: the design's and the initial design's."""
+    pairs = _pairs(design, initial, name)
+    if pairs is None:
+        return None
+    return math.fsum(w * own for w, own, _ in pairs), math.fsum(w * first for w, _, first in pairs)
+
+
+def _fuel(design: DesignNumbers, initial: InitialNumbers) -> float | None:
+    burnt = _over_profile(design, initial, "fuel_rate")
+    return None if burnt is None else burnt[0] / burnt[1]
+
+
+def _fuel_per_transport_work(design: DesignNumbers, initial: InitialNumbers) -> float | None:
+    burnt, sailed = (_over_profile(design, initial, name) for name in ("fuel_rate", "speed"))
+    cargo = _deadweight(design, initial)
+    if burnt is None or sailed is None or cargo is None:
+        return None
+    return burnt[0] / burnt[1] * sailed[1] / sailed[0] * cargo
+
+
+def _deadweight(design: DesignNumbers, initial: InitialNumbers) -> float | None:
+    own, first = design.hull.deadweight, initial.hull.get("deadweight")
+    return None if own is None or first is None else first / own
+
+
+def _metacentric_height(design: DesignNumbers, initial: InitialNumbers) -> float | None:
+    own, first = design.hull.metacentric_height, initial.hull.get("metacentric_height")
+    return None if own is None or first is None else 2.0 - own / first
+
+
 def _cavitation_margin(design: DesignNumbers, initial: InitialNumbers) -> float:
     area_ratio = design.propeller.expanded_area_ratio
     return 1.0 - (area_ratio - design.conditions[0].required_expanded_area_ratio) / area_ratio
 
+
+_FUEL = ("engine.maximum_continuous_rating", "engine.specific_fuel_consumptions")
 
 OBJECTIVES: tuple[Objective, ...] = (
     Objective(
@@ -121,8 +156,40 @@ OBJECTIVES: tuple[Objective, ...] = (
         name="cavitation_margin",
         label="cavitation margin",
         formula="1 − (EAR − EARreq)/EAR",
-        words="1 minus the margin of blade area over Keller's requirement at the first condition",
+        words="1 minus the margin of blade area over what the cavitation criterion requires at the first condition",
         value=_cavitation_margin,
+    ),
+    Objective(
+        name="fuel",
+        label="fuel",
+        formula="Σ w ṁ/Σ w ṁ₀",
+        words="the main engine's fuel over the operating profile, over the initial design's",
+        value=_fuel,
+        needs=_FUEL,
+    ),
+    Objective(
+        name="fuel_per_transport_work",
+        label="fuel per transport work",
+        formula="(Σ w ṁ/(DWT Σ w V))/(…)₀",
+        words="fuel over the profile per deadweight and distance sailed, over the initial design's",
+        value=_fuel_per_transport_work,
+        needs=(*_FUEL, "loading.lightship_mass"),
+    ),
+    Objective(
+        name="deadweight",
+        label="deadweight",
+        formula="DWT₀/DWT",
+        words="the initial design's deadweight over the design's (less is better)",
+        value=_deadweight,
+        needs=("loading.lightship_mass",),
+    ),
+    Objective(
+        name="metacentric_height",
+        label="metacentric height",
+        formula="2 − GM/GM₀",
+        words="2 minus the metacentric height over the initial design's (less is better: a stiffer ship)",
+        value=_metacentric_height,
+        needs=("loading.centre_of_gravity_height",),
     ),
 )
 

@@ -189,6 +189,20 @@ class ConstraintsSection:
     keller_k: float = number(0.0, 0.0, 0.2, "Keller's K: 0 for fast twin-screw ships to 0.2 for single-screw ships")
     booked_block_coefficient_lower: float = number(0.50, 0.3, 1.0, "affine form: least booked CB")
     booked_block_coefficient_upper: float = number(0.80, 0.3, 1.0, "affine form: greatest booked CB")
+    cavitation_conditions: str = choice(
+        "first", ("first", "all"), "where g3 and the share of the back apply: at the first condition or at each"
+    )
+    cavitation_criterion: str = choice(
+        "keller", ("keller", "burrill"), "g3: Keller's least blade area, or Burrill's for 5 % back cavitation"
+    )
+    back_cavitation_limit: float | None = optional_number(
+        0.0, 1.0, "greatest share of the blades' back below vapour pressure; level 2 alone knows it"
+    )
+    least_tip_clearance: float | None = optional_number(
+        0.0, 1.0, "least distance of the blade tips from the hull, as a fraction of D"
+    )
+    greatest_length: float | None = optional_number(0.1, 1000.0, "of Lpp", "m")
+    greatest_breadth: float | None = optional_number(0.02, 200.0, "of B", "m")
 
 
 @dataclass(frozen=True)

@@ -197,6 +197,8 @@ class DesignVariables(StatedVariables, Proportions):
 
 VARIABLE_TABLE = declared_variables(DesignVariables)
 VARIABLE_NAMES = tuple(VARIABLE_TABLE)
+ON_BOUND = 0.01
+"""A variable within this part of its range of a bound stands on it."""
 _BLADE_COUNT = VARIABLE_NAMES.index("blade_count")
 
 
@@ -291,6 +293,23 @@ class DesignSpace:
         """The free vector, shape (free,), that decodes to ``variables`` if they lie inside the bounds."""
         key = variables.key()
         return np.array([key[i] for i in self.free])
+
+    def active(self, variables: DesignVariables) -> dict[str, str]:
+        """Which free variables stand on a bound: "lower" or "upper" by name.
+
+        On a bound means within 1 % of the range: what an optimiser of finite population presses against a bound ends
+        there and not on its last digit.
+        """
+        found = {}
+        for i, value in enumerate(variables.key()):
+            low, high = self.lower[i], self.upper[i]
+            if low < high:
+                near = ON_BOUND * (high - low)
+                if value <= low + near:
+                    found[VARIABLE_NAMES[i]] = "lower"
+                elif value >= high - near:
+                    found[VARIABLE_NAMES[i]] = "upper"
+        return found
 
     def project(self, variables: DesignVariables) -> DesignVariables:
         """The nearest design inside the bounds, variable by variable."""

@@ -61,14 +61,12 @@ def case_and_design(name: str, changes: Sequence[str]) -> tuple[Case, DesignVari
         if not separator:
             raise InputError(f"--set {change}: write NAME=VALUE, for example --set diameter=9.2")
         if "." in field:
-            section, name, value = _case_field(case, field, word.strip())
-            fields.setdefault(section, {})[name] = value
+            section, item, value = _case_field(case, field, word.strip())
+            fields.setdefault(section, {})[item] = value
         else:
             variables[field] = _number_or_word(word.strip())
     try:
-        # A section at once: fields that belong together (speeds and weights) are stated one after the other.
-        for section, values in fields.items():
-            case = case.replaced(section, **values)
+        case = case.changed(fields)
     except InputError as error:
         raise InputError(f"--set {error}") from error
     initial = case.initial.variables
@@ -76,6 +74,7 @@ def case_and_design(name: str, changes: Sequence[str]) -> tuple[Case, DesignVari
 
 
 def _case_field(case: Case, field: str, word: str) -> tuple[str, str, object]:
+    """Section, field and value of section.field=value."""
     section, _, name = field.partition(".")
     sections = [item.name for item in dataclasses.fields(case) if dataclasses.is_dataclass(getattr(case, item.name))]
     sections.remove("bounds")

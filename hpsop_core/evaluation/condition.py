@@ -11,10 +11,11 @@ from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.evaluation.hull_answer import ResistancePoint
 from hpsop_core.evaluation.hull_propulsion import PropulsionFactors
 from hpsop_core.evaluation.propeller_answer import PropellerAnswer
+from hpsop_core.evaluation.ship import running_point
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.hydro import cavitation
-from hpsop_core.hydro.operating_point import match
+from hpsop_core.hydro.operating_point import OperatingPoint, match
 from hpsop_core.hydro.powering import powers
 
 
@@ -82,6 +83,10 @@ def condition_result(
             constants.gravity,
         )
     )
+    sigma = cavitation.cavitation_number(
+        margin, constants.density, advance_speed, operating.rotation_rate, propeller.diameter
+    )
+    running = running_point(case.engine, power.brake, operating.rotation_rate)
     return ConditionResult(
         froude_number=point.froude_number,
         weight=weight,
@@ -100,13 +105,9 @@ def condition_result(
         torque_coefficient=operating.torque_coefficient,
         open_water_efficiency=operating.open_water_efficiency,
         delivered_power=operating.delivered_power,
-        required_expanded_area_ratio=cavitation.keller_expanded_area_ratio(
-            propeller.blade_count, operating.thrust, propeller.diameter, margin, case.constraints.keller_k
-        ),
+        required_expanded_area_ratio=_required_area_ratio(case, propeller, operating, margin, advance_speed, sigma),
         wave_calibration=point.wave_calibration,
-        cavitation_number=cavitation.cavitation_number(
-            margin, constants.density, advance_speed, operating.rotation_rate, propeller.diameter
-        ),
+        cavitation_number=sigma,
         reynolds_number_07R=section_speed * _chord_07r(propeller) / constants.viscosity,
         blade_cavitation_margin=blades.margin if blades else None,
         blade_minimum_pressure_coefficient=blades.minimum_pressure_coefficient if blades else None,
@@ -124,6 +125,30 @@ def condition_result(
         relative_rotative_efficiency=factors.relative_rotative_efficiency,
         propulsive_efficiency=power.propulsive_efficiency,
         brake_power=power.brake,
+        engine_load=running.load,
+        engine_excess=running.excess,
+        fuel_rate=running.fuel_rate,
+    )
+
+
+def _required_area_ratio(
+    case: Case,
+    propeller: Propeller,
+    operating: OperatingPoint,
+    margin: float,
+    advance_speed: float,
+    sigma: float,
+) -> float:
+    """Least expanded area ratio by the case's criterion."""
+    if case.constraints.cavitation_criterion == "burrill":
+        pressure = cavitation.section_dynamic_pressure(
+            case.constants.density, advance_speed, operating.rotation_rate, propeller.diameter
+        )
+        return cavitation.burrill_expanded_area_ratio(
+            operating.thrust, propeller.diameter, propeller.pitch_diameter_ratio_07R, pressure, sigma
+        )
+    return cavitation.keller_expanded_area_ratio(
+        propeller.blade_count, operating.thrust, propeller.diameter, margin, case.constraints.keller_k
     )
 
 

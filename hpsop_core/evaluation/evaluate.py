@@ -21,6 +21,7 @@ from hpsop_core.evaluation.levels import level_of
 from hpsop_core.evaluation.physics import Physics, compute
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation, Failed, Ok
+from hpsop_core.evaluation.ship import profile_eedi, ship_warnings
 from hpsop_core.one_thread import one_blas_thread
 
 
@@ -48,7 +49,8 @@ def evaluate(
 
     Raises:
         ValueError: level is neither 1 nor 2, or the reference belongs to the other level.
-        InputError: a file that the case names cannot be used.
+        InputError: a file that the case names cannot be used; or the case's loading or engine is none, see
+            ``reference_for``.
     """
     level_of(level)
     started = time.perf_counter()
@@ -80,6 +82,7 @@ def _assessed(
             raise SolverFailure("objectives", f"the numbers for {name} are missing; choose another objective")
     kept = {constraint.name: constraint.value(design, initial, case) for constraint in constraints}
     violated = {constraint.name for constraint in constraints if constraint.is_violated(kept[constraint.name])}
+    fuel = design.fuel_per_hour
     return Ok(
         case=case.name,
         level=design.level,
@@ -91,8 +94,12 @@ def _assessed(
         all_objectives=known,
         constraints=kept,
         feasible=not violated,
-        warnings=(*physics.warnings, *_warnings(design, "form" in violated)),
+        warnings=(*physics.warnings, *_warnings(design, "form" in violated), *ship_warnings(case, design)),
         open_water=open_water_curve(physics.curve),
+        active_bounds=case.bounds.active(design.variables),
+        fuel_per_hour=fuel,
+        carbon_dioxide_per_hour=None if fuel is None else case.engine.fuel_carbon_factor * fuel,
+        attained_eedi_g_per_tonne_mile=profile_eedi(case, design),
     )
 
 

@@ -23,6 +23,7 @@ from hpsop_core.evaluation.hull_propulsion import (
 from hpsop_core.evaluation.levels import TRUTH, Level, level_of
 from hpsop_core.evaluation.propeller_answer import build_propeller, propeller_answer, propeller_variables
 from hpsop_core.evaluation.shapes import initial_volume
+from hpsop_core.evaluation.ship import Loading, loading
 from hpsop_core.geometry.clearance import baseline_clearance, propeller_clearance
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.hydro.holtrop import HoltropHull
@@ -177,10 +178,11 @@ def compute(case: Case, variables: DesignVariables, level: int, basis: Basis) ->
             froude_numbers, waves, case.conditions.weights, propulsion, strict=True
         )
     )
+    booked = (volume, block_coefficient) if case.hull.form == "affine" else None
     numbers = DesignNumbers(
         level=level,
         variables=variables,
-        hull=_hull_result(hull, (volume, block_coefficient) if case.hull.form == "affine" else None),
+        hull=_hull_result(hull, loading(case, hull), booked),
         propeller=PropellerResult(
             diameter=propeller.diameter,
             blade_count=propeller.blade_count,
@@ -199,7 +201,7 @@ def compute(case: Case, variables: DesignVariables, level: int, basis: Basis) ->
     return Physics(numbers, answer.curve, (*hull.warnings, *warnings, *cautions))
 
 
-def _hull_result(hull: Hull, booked: tuple[float, float] | None) -> HullResult:
+def _hull_result(hull: Hull, loaded: Loading, booked: tuple[float, float] | None) -> HullResult:
     hydrostatics = hull.hydrostatics
     return HullResult(
         length=hull.length,
@@ -212,6 +214,18 @@ def _hull_result(hull: Hull, booked: tuple[float, float] | None) -> HullResult:
         clipped=hull.clipped,
         booked_block_coefficient=None if booked is None else booked[1],
         booked_volume=None if booked is None else booked[0],
+        depth=hull.depth,
+        displacement_mass=loaded.displacement_mass,
+        midship_coefficient=hydrostatics.midship_coefficient,
+        prismatic_coefficient=hydrostatics.prismatic_coefficient,
+        waterplane_coefficient=hydrostatics.waterplane_coefficient,
+        centre_of_buoyancy_height=hydrostatics.vertical_centre_of_buoyancy,
+        metacentric_radius=hydrostatics.transverse_metacentric_radius,
+        metacentre_height=hydrostatics.metacentre_height,
+        centre_of_gravity_height=loaded.centre_of_gravity_height,
+        metacentric_height=loaded.metacentric_height,
+        lightship_mass=loaded.lightship_mass,
+        deadweight=loaded.deadweight,
     )
 
 

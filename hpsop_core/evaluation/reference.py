@@ -10,6 +10,8 @@ from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import ConditionResult, DesignNumbers, InitialNumbers
 from hpsop_core.evaluation.hull_propulsion import HoltropNumbers
 from hpsop_core.evaluation.physics import Basis, basis_for, compute
+from hpsop_core.evaluation.shapes import design_hull
+from hpsop_core.evaluation.ship import check_engine, check_loading
 from hpsop_core.one_thread import one_blas_thread
 
 
@@ -71,9 +73,12 @@ def reference_for(case: Case, level: int) -> Reference:
 
     Raises:
         SolverFailure: the initial design itself cannot be computed at this level.
+        InputError: it would not float upright, or the engine is smaller than any design needs.
     """
+    check_loading(case, design_hull(case, case.initial.variables))
     basis = basis_for(case, level)
     numbers = compute(case, case.initial.variables, level, basis).numbers
+    check_engine(case, numbers)
     return Reference(level, basis, _initial_numbers(basis.displaced_volume, numbers))
 
 

@@ -7,7 +7,7 @@ checkers know which it is after ``if evaluation.ok:``.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from dataclasses import asdict, dataclass, field, fields
 from typing import Any, ClassVar, Literal, TypeAlias
 
 from hpsop_core.case.constraints import CONSTRAINTS
@@ -40,6 +40,11 @@ class Ok:
         constraints: g <= 0 by name (see ``case.constraints``), None where it is not applied.
         feasible: every constraint is kept.
         warnings: for people.
+        active_bounds: "lower" or "upper" by the name of each variable that stands on a bound of the case.
+        fuel_per_hour, carbon_dioxide_per_hour: over the operating profile, in kg/h; None without an engine's
+            consumption.
+        attained_eedi_g_per_tonne_mile: grams of CO2 per tonne and nautical mile; None where it is not known.
+        errors: half width of the 90 % interval by the name of a quantity, where it is known.
         elapsed: wall time in s; the only field that differs from run to run.
     """
 
@@ -60,6 +65,11 @@ class Ok:
     feasible: bool
     warnings: tuple[str, ...]
     open_water: OpenWaterCurve
+    active_bounds: Mapping[str, str] = field(default_factory=dict)
+    fuel_per_hour: float | None = None
+    carbon_dioxide_per_hour: float | None = None
+    attained_eedi_g_per_tonne_mile: float | None = None
+    errors: Mapping[str, float] = field(default_factory=dict)
     elapsed: float = 0.0
 
     def as_dict(self) -> dict[str, Any]:
@@ -82,9 +92,15 @@ class Ok:
             "feasible": self.feasible,
             "warnings": list(self.warnings),
             "open_water": {key: list(values) for key, values in asdict(self.open_water).items()},
+            "active_bounds": dict(self.active_bounds),
+            **{name: getattr(self, name) for name in _PROFILE},
+            "errors": dict(self.errors),
             "elapsed": self.elapsed,
             "stage": self.stage,
         }
+
+
+_PROFILE = ("fuel_per_hour", "carbon_dioxide_per_hour", "attained_eedi_g_per_tonne_mile")
 
 
 @dataclass(frozen=True)
@@ -110,6 +126,11 @@ class Failed:
     objectives: ClassVar[Mapping[str, float | None]] = {"f1": None, "f2": None}
     all_objectives: ClassVar[Mapping[str, float]] = {}
     constraints: ClassVar[Mapping[str, float | None]] = {constraint.name: None for constraint in CONSTRAINTS}
+    active_bounds: ClassVar[Mapping[str, str]] = {}
+    fuel_per_hour: ClassVar[None] = None
+    carbon_dioxide_per_hour: ClassVar[None] = None
+    attained_eedi_g_per_tonne_mile: ClassVar[None] = None
+    errors: ClassVar[Mapping[str, float]] = {}
 
     case: str
     level: int
@@ -135,6 +156,9 @@ class Failed:
             "feasible": self.feasible,
             "warnings": [],
             "open_water": None,
+            "active_bounds": {},
+            **dict.fromkeys(_PROFILE),
+            "errors": {},
             "elapsed": self.elapsed,
             "stage": self.stage,
         }
@@ -163,6 +187,9 @@ def evaluation_from_dict(data: Mapping[str, Any]) -> Evaluation:
         feasible=data["feasible"],
         warnings=tuple(data.get("warnings", ())),
         open_water=OpenWaterCurve(**curves),
+        active_bounds=data.get("active_bounds", {}),
+        **{name: data.get(name) for name in _PROFILE},
+        errors=data.get("errors", {}),
         elapsed=data.get("elapsed", 0.0),
     )
 

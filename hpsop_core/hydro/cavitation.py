@@ -1,4 +1,4 @@
-"""Keller's criterion and the cavitation number."""
+"""Keller's and Burrill's criteria and the cavitation number."""
 
 from __future__ import annotations
 
@@ -53,3 +53,44 @@ def section_dynamic_pressure(density: float, advance_speed: float, rotation_rate
     """1/2 rho (V_A^2 + (0.7 pi n D)^2) in Pa of the 0.7 R section; arguments as for ``cavitation_number``."""
     speed_squared = advance_speed**2 + (0.7 * math.pi * rotation_rate * diameter) ** 2
     return 0.5 * density * speed_squared
+
+
+# The line of 5 % back cavitation in Burrill and Emerson's diagram (Propeller cavitation: further tests on 16-inch
+# propeller models in the King's College cavitation tunnel, NECIES Transactions 79, 1963), as fitted by Birk
+# (Fundamentals of Ship Hydrodynamics, Wiley 2019, chapter 46): a sigma^b + c.
+_BURRILL_5 = (0.715, 0.184, -0.437)
+# The fit falls to nothing at 0.07, and the diagram ends at 0.1 and 2.0.
+_FIT_FROM, _DIAGRAM_TO = 0.15, 2.0
+
+
+def burrill_thrust_loading(cavitation_number_07r: float) -> float:
+    """tau_c at 5 % back cavitation: greatest T/(A_P 1/2 rho V_07R^2), by Burrill and Emerson's diagram.
+
+    Below 0.15 it is proportional to the cavitation number, which lies below the diagram's curve; above 2.0, where the
+    diagram ends, it stays.
+
+    Args:
+        cavitation_number_07r: as ``cavitation_number``, positive.
+    """
+    factor, exponent, shift = _BURRILL_5
+    within = min(max(cavitation_number_07r, _FIT_FROM), _DIAGRAM_TO)
+    limit: float = factor * within**exponent + shift
+    return limit * min(1.0, cavitation_number_07r / _FIT_FROM)
+
+
+def burrill_expanded_area_ratio(
+    thrust: float, diameter: float, pitch_ratio: float, dynamic_pressure: float, cavitation_number_07r: float
+) -> float:
+    """Least expanded area ratio by Burrill's criterion; the developed area is taken as the expanded one.
+
+    Projected over developed area is 1.067 - 0.229 P/D (Taylor's approximation, as in Burrill's diagram).
+
+    Args:
+        thrust: T in N.
+        diameter: D in m.
+        pitch_ratio: P/D at 0.7 R.
+        dynamic_pressure: as ``section_dynamic_pressure``, in Pa.
+        cavitation_number_07r: as ``cavitation_number``.
+    """
+    projected = thrust / (dynamic_pressure * burrill_thrust_loading(cavitation_number_07r))
+    return projected / (1.067 - 0.229 * pitch_ratio) / (0.25 * math.pi * diameter**2)

@@ -48,7 +48,8 @@ def objective_lines(case: Case) -> list[Markup]:
 
 def constraint_clauses(case: Case) -> list[Markup]:
     """What the case asks by each constraint."""
-    return [fill("{}: {}", symbol_html(item.symbol), item.asked(case)) for item in CONSTRAINTS]
+    clauses = [(item.symbol, item.asked(case)) for item in CONSTRAINTS]
+    return [fill("{}: {}", symbol_html(symbol), asked) for symbol, asked in clauses if asked]
 
 
 def assumptions(case: Case) -> Markup:

@@ -346,6 +346,15 @@ class Hull:
         return self.parent.shaft_height * self.draft / self.parent.draft
 
     @property
+    def depth(self) -> float:
+        """Height of the deck above the baseline, m; scales with the draft.
+
+        A shipped hull states it; of an own hull it is the highest waterline of the table or of the sampled mesh, and
+        where nothing reaches above the draft, that of the upright walls which stand in for the topsides.
+        """
+        return self.parent.deck_height * self.draft / self.parent.draft
+
+    @property
     def boss_end_x(self) -> float:
         """x of the aft end of the boss, where the hub's forward face stands, m; scales with the length."""
         return self.parent.boss_end_x * self.length / self.parent.length

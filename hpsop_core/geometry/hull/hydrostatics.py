@@ -52,6 +52,11 @@ class Hydrostatics:
     sectional_area_x: Array
     sectional_area: Array
 
+    @property
+    def metacentre_height(self) -> float:
+        """KM = KB + BM in m above the baseline, transverse, for small angles of heel."""
+        return self.vertical_centre_of_buoyancy + self.transverse_metacentric_radius
+
 
 @dataclass(frozen=True, eq=False)
 class HullQuadrature:
