@@ -165,9 +165,7 @@ def profile_eedi(case: Case, design: DesignNumbers) -> float | None:
     )
 
 
-def calm_water(
-    conditions: Sequence[ConditionResult], shaft_efficiency: float
-) -> tuple[list[float], list[float]]:
+def calm_water(conditions: Sequence[ConditionResult], shaft_efficiency: float) -> tuple[list[float], list[float]]:
     """Speeds in m/s and brake powers in W without sea margin."""
     powers = [condition.delivered_power / shaft_efficiency for condition in conditions]
     return [condition.speed for condition in conditions], powers

@@ -74,7 +74,7 @@ def test_every_field_stands_in_its_declared_order_and_lists_on_one_line() -> Non
     heads = [line for line in lines if line.startswith("[")]
     assert heads == [
         *("[hull]", "[propeller]", "[initial]", "[bounds]", "[conditions]", "[objectives]", "[constraints]"),
-        *("[constants]", "[optimization]"),
+        *("[constants]", "[loading]", "[engine]", "[optimization]"),
     ]
     assert lines[0].startswith("name = ")
     assert "length_to_breadth = [6.5, 8.5]" in lines
