@@ -26,8 +26,8 @@ What stands where, from the ground up: ``typing_aliases``, ``errors``, ``version
 (escaping), ``one_thread`` (the same bits everywhere) and ``assets`` (shipped files); ``geometry`` (shapes), ``hydro``
 (solvers), ``machinery`` (the engine), ``case`` (what the user states), ``evaluation`` (a design's numbers),
 ``quantities`` (how they are written), ``charts`` (how they are drawn), ``optimization`` (the search), ``runs`` (the
-file, the workers, the controller); ``export``, ``report``, ``validation`` and ``reproduction``; ``cli`` (the commands). Each imports only
-from those before it; each folder's docstring says what its files are for.
+file, the workers, the controller); ``export``, ``report``, ``validation`` and ``reproduction``; ``cli`` (the
+commands). Each imports only from those before it; each folder's docstring says what its files are for.
 
 SI units, radians inside; ship axes x forward from the after perpendicular, y to port, z up (docs/conventions.md).
 Everything is frozen. Bad input raises ``hpsop_core.errors.InputError``, one line with the remedy.
