@@ -123,6 +123,27 @@ def holtrop_warnings(ship: holtrop.HoltropHull, speeds: tuple[float, ...], gravi
     )
 
 
+def unused_statements(constants: ConstantsSection) -> tuple[str, ...]:
+    """One line for each number that a case states and its formulas do not use."""
+    lines = []
+    for name, formula, used, stated in (
+        ("stated_wake_fraction", "wake_formula", "stated", constants.stated_wake_fraction is not None),
+        (
+            "stated_thrust_deduction",
+            "thrust_deduction_formula",
+            "stated",
+            constants.stated_thrust_deduction is not None,
+        ),
+        ("correlation_allowance", "correlation_allowance_formula", "stated", constants.correlation_allowance != 0.0),
+    ):
+        chosen = getattr(constants, formula)
+        if stated and chosen != used:
+            lines.append(f'{name} is not used, for {formula} is {chosen}; write {formula} = "{used}" to use it')
+    if constants.frontal_area == 0.0 and constants.air_drag_coefficient != ConstantsSection.air_drag_coefficient:
+        lines.append("air_drag_coefficient is not used, for there is no frontal_area; state it in m2")
+    return tuple(lines)
+
+
 def resistance_factors(
     case: Case,
     hull: Hull,

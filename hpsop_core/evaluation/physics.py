@@ -18,6 +18,7 @@ from hpsop_core.evaluation.hull_propulsion import (
     holtrop_warnings,
     propulsion_factors,
     resistance_factors,
+    unused_statements,
     uses_holtrop,
 )
 from hpsop_core.evaluation.levels import TRUTH, Level, level_of
@@ -147,11 +148,11 @@ def compute(case: Case, variables: DesignVariables, level: int, basis: Basis) ->
         block_coefficient = hull.hydrostatics.block_coefficient
     resistance, ship = design_factors(case, variables, hull, basis)
     own: HoltropNumbers | None = None
-    cautions: tuple[str, ...] = ()
+    cautions = unused_statements(constants)
     if ship is not None:
         speeds = tuple(froude * (constants.gravity * hull.length) ** 0.5 for froude in froude_numbers)
         own = holtrop_numbers(ship, propeller.diameter, speeds, constants.viscosity)
-        cautions = holtrop_warnings(ship, speeds, constants.gravity)
+        cautions += holtrop_warnings(ship, speeds, constants.gravity)
     propulsion = propulsion_factors(
         constants, block_coefficient, propeller.expanded_area_ratio, len(froude_numbers), ship, own, basis.holtrop
     )

@@ -169,6 +169,25 @@ def test_holtrop_outside_its_ships_is_said() -> None:
     assert not [line for line in computed(CASE, flat).warnings if "Holtrop" in line]
 
 
+@pytest.mark.parametrize(
+    ("changes", "word"),
+    [
+        ({"stated_wake_fraction": 0.25}, 'wake_formula is taylor_quadratic; write wake_formula = "stated"'),
+        ({"stated_thrust_deduction": 0.15}, "thrust_deduction_formula is schoenherr"),
+        (
+            {"correlation_allowance": 2e-4, "correlation_allowance_formula": "holtrop"},
+            "correlation_allowance_formula is holtrop",
+        ),
+        ({"air_drag_coefficient": 0.9}, "no frontal_area"),
+    ],
+)
+def test_a_stated_number_that_is_not_used_is_said(changes: dict[str, object], word: str) -> None:
+    lines = [line for line in computed(CASE.replaced("constants", **changes)).warnings if "is not used" in line]
+    assert len(lines) == 1
+    assert word in lines[0]
+    assert not [line for line in computed(stated_case()).warnings if "is not used" in line]
+
+
 # ---- speeds ----------------------------------------------------------------------------------------------------------
 def test_speeds_in_knots_are_the_same_as_their_froude_numbers() -> None:
     knots = [speed / KNOT for speed in CASE.speeds]
