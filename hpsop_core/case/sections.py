@@ -224,8 +224,9 @@ class ConstantsSection:
     correlation_allowance: float = number(0.0, -0.001, 0.002, "C_A, model-ship correlation allowance")
     correlation_allowance_formula: str = choice(
         "stated",
-        ("stated", "holtrop"),
-        "stated: correlation_allowance; holtrop: Holtrop's, for a roughness of 150e-6 m",
+        ("stated", "scaled", "holtrop"),
+        "stated: correlation_allowance for every design; scaled: for the initial design, the others by the change of "
+        "Holtrop's; holtrop: Holtrop's, for 150e-6 m of roughness",
     )
     air_drag_coefficient: float = number(0.8, 0.0, 2.0, "drag coefficient of the ship above water, ahead in still air")
     frontal_area: float = number(
@@ -253,7 +254,10 @@ class ConstantsSection:
     )
     relative_rotative_efficiency: float = number(1.0, 0.8, 1.2, "eta_R")
     relative_rotative_efficiency_formula: str = choice(
-        "stated", ("stated", "holtrop"), "stated: relative_rotative_efficiency; holtrop: Holtrop's"
+        "stated",
+        ("stated", "scaled", "holtrop"),
+        "stated: relative_rotative_efficiency for every design; scaled: for the initial design, the others by the "
+        "change of Holtrop's; holtrop: Holtrop's",
     )
     stern_shape: float = number(
         0.0, -25.0, 10.0, "Holtrop's C_stern: -25 pram with gondola, -10 V sections, 0 normal, 10 U with Hogner stern"

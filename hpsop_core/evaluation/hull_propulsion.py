@@ -26,13 +26,17 @@ class HoltropNumbers:
 
     Attributes:
         form_factor: k1.
+        correlation_allowance: C_A.
         wake_fractions: w at each condition.
         thrust_deduction: t.
+        relative_rotative_efficiency: eta_R.
     """
 
     form_factor: float
+    correlation_allowance: float
     wake_fractions: tuple[float, ...]
     thrust_deduction: float
+    relative_rotative_efficiency: float
 
 
 @dataclass(frozen=True)
@@ -48,10 +52,10 @@ def uses_holtrop(constants: ConstantsSection) -> bool:
     """Whether any number of a design of the case comes from Holtrop's formulas."""
     return (
         constants.form_factor_formula != "stated"
-        or constants.correlation_allowance_formula == "holtrop"
+        or constants.correlation_allowance_formula != "stated"
         or constants.wake_formula in ("holtrop", "stated")
         or constants.thrust_deduction_formula != "schoenherr"
-        or constants.relative_rotative_efficiency_formula == "holtrop"
+        or constants.relative_rotative_efficiency_formula != "stated"
     )
 
 
@@ -89,13 +93,14 @@ def holtrop_hull(hull: Hull, displaced_volume: float, constants: ConstantsSectio
 
 
 def holtrop_numbers(
-    ship: holtrop.HoltropHull, diameter: float, speeds: tuple[float, ...], viscosity: float
+    ship: holtrop.HoltropHull, diameter: float, expanded_area_ratio: float, speeds: tuple[float, ...], viscosity: float
 ) -> HoltropNumbers:
     """What Holtrop's formulas give.
 
     Args:
         ship: the hull.
         diameter: D in m.
+        expanded_area_ratio: of the propeller.
         speeds: at the conditions, in m/s.
         viscosity: of the water, in m2/s.
 
@@ -109,7 +114,13 @@ def holtrop_numbers(
         friction = ittc57_coefficient(speed * ship.length / viscosity)
         viscous = holtrop.viscous_coefficient(form_factor, friction, allowance)
         wakes.append(holtrop.wake_fraction(ship, viscous, diameter))
-    return HoltropNumbers(form_factor, tuple(wakes), holtrop.thrust_deduction(ship, diameter))
+    return HoltropNumbers(
+        form_factor=form_factor,
+        correlation_allowance=allowance,
+        wake_fractions=tuple(wakes),
+        thrust_deduction=holtrop.thrust_deduction(ship, diameter),
+        relative_rotative_efficiency=holtrop.relative_rotative_efficiency(ship, expanded_area_ratio),
+    )
 
 
 def holtrop_warnings(ship: holtrop.HoltropHull, speeds: tuple[float, ...], gravity: float) -> tuple[str, ...]:
@@ -126,19 +137,29 @@ def holtrop_warnings(ship: holtrop.HoltropHull, speeds: tuple[float, ...], gravi
 def unused_statements(constants: ConstantsSection) -> tuple[str, ...]:
     """One line for each number that a case states and its formulas do not use."""
     lines = []
-    for name, formula, used, stated in (
-        ("stated_wake_fraction", "wake_formula", "stated", constants.stated_wake_fraction is not None),
+    for name, formula, use, wasted in (
+        (
+            "stated_wake_fraction",
+            "wake_formula",
+            "stated",
+            constants.stated_wake_fraction is not None and constants.wake_formula != "stated",
+        ),
         (
             "stated_thrust_deduction",
             "thrust_deduction_formula",
             "stated",
-            constants.stated_thrust_deduction is not None,
+            constants.stated_thrust_deduction is not None and constants.thrust_deduction_formula != "stated",
         ),
-        ("correlation_allowance", "correlation_allowance_formula", "stated", constants.correlation_allowance != 0.0),
+        (
+            "correlation_allowance",
+            "correlation_allowance_formula",
+            "stated",
+            constants.correlation_allowance != 0.0 and constants.correlation_allowance_formula == "holtrop",
+        ),
     ):
-        chosen = getattr(constants, formula)
-        if stated and chosen != used:
-            lines.append(f'{name} is not used, for {formula} is {chosen}; write {formula} = "{used}" to use it')
+        if wasted:
+            chosen = getattr(constants, formula)
+            lines.append(f'{name} is not used, for {formula} is {chosen}; write {formula} = "{use}" to use it')
     if constants.frontal_area == 0.0 and constants.air_drag_coefficient != ConstantsSection.air_drag_coefficient:
         lines.append("air_drag_coefficient is not used, for there is no frontal_area; state it in m2")
     return tuple(lines)
@@ -147,8 +168,8 @@ def unused_statements(constants: ConstantsSection) -> tuple[str, ...]:
 def resistance_factors(
     case: Case,
     hull: Hull,
-    ship: holtrop.HoltropHull | None,
-    initial_form_factor: float | None,
+    ship: holtrop.HoltropHull | None = None,
+    initial: HoltropNumbers | None = None,
     form_factor: float | None = None,
 ) -> ResistanceFactors:
     """What makes the parts of a design's resistance beside friction and waves.
@@ -157,21 +178,19 @@ def resistance_factors(
         case: what it states.
         hull: of the design.
         ship: the same for Holtrop's method; None where the case does not use it.
-        initial_form_factor: Holtrop's for the initial design, where the case uses the method.
+        initial: what Holtrop's formulas give for the initial design; None where the case does not use them.
         form_factor: k instead of the case's.
     """
     constants = case.constants
-    factor = constants.form_factor if form_factor is None else form_factor
-    allowance = constants.correlation_allowance
-    if ship is not None:
-        if form_factor is None and constants.form_factor_formula == "holtrop":
-            factor = holtrop.form_factor(ship)
-        elif form_factor is None and constants.form_factor_formula == "scaled" and initial_form_factor is not None:
-            factor += holtrop.form_factor(ship) - initial_form_factor
-        if constants.correlation_allowance_formula == "holtrop":
-            allowance = holtrop.correlation_allowance(ship)
+    factor, allowance = constants.form_factor, constants.correlation_allowance
+    if ship is not None and initial is not None:
+        own_factor, own_allowance = holtrop.form_factor(ship), holtrop.correlation_allowance(ship)
+        factor = _chosen(constants.form_factor_formula, factor, own_factor, initial.form_factor)
+        allowance = _chosen(
+            constants.correlation_allowance_formula, allowance, own_allowance, initial.correlation_allowance
+        )
     return ResistanceFactors(
-        form_factor=factor,
+        form_factor=factor if form_factor is None else form_factor,
         correlation_allowance=allowance,
         air_drag_coefficient=constants.air_drag_coefficient,
         frontal_area=constants.frontal_area * (hull.breadth / case.initial.breadth),
@@ -182,9 +201,7 @@ def resistance_factors(
 def propulsion_factors(
     constants: ConstantsSection,
     block_coefficient: float,
-    expanded_area_ratio: float,
     count: int,
-    ship: holtrop.HoltropHull | None = None,
     own: HoltropNumbers | None = None,
     initial: HoltropNumbers | None = None,
 ) -> tuple[PropulsionFactors, ...]:
@@ -193,51 +210,54 @@ def propulsion_factors(
     Args:
         constants: of the case.
         block_coefficient: C_B as the case counts it.
-        expanded_area_ratio: of the propeller.
         count: of conditions.
-        ship, own, initial: for Holtrop's method: the hull, what the formulas give for it and for the initial design.
+        own, initial: what Holtrop's formulas give for the design and for the initial one; None where the case does not
+            use them.
 
     Raises:
         SolverFailure: a number leaves what can be.
     """
-    rotative = constants.relative_rotative_efficiency
-    if ship is not None and constants.relative_rotative_efficiency_formula == "holtrop":
-        rotative = holtrop.relative_rotative_efficiency(ship, expanded_area_ratio)
-    found = []
-    for index in range(count):
-        wake = _wake(constants, block_coefficient, index, own, initial)
-        found.append(PropulsionFactors(wake, _deduction(constants, wake, own, initial), rotative))
-    return tuple(found)
+    return tuple(_at_condition(constants, block_coefficient, index, own, initial) for index in range(count))
 
 
-def _wake(
+def _at_condition(
     constants: ConstantsSection,
     block_coefficient: float,
     index: int,
     own: HoltropNumbers | None,
     initial: HoltropNumbers | None,
-) -> float:
-    if constants.wake_formula == "holtrop" and own is not None:
-        return own.wake_fractions[index]
-    if constants.wake_formula == "stated" and constants.stated_wake_fraction is not None:
-        if own is None or initial is None:
-            raise ValueError("a stated wake fraction needs Holtrop's for the design and the initial one")
-        change = own.wake_fractions[index] - initial.wake_fractions[index]
-        return _within("w", constants.stated_wake_fraction + change)
-    return interaction.wake_fraction(block_coefficient, constants.wake_formula)
+) -> PropulsionFactors:
+    if own is None or initial is None:
+        wake = interaction.wake_fraction(block_coefficient, constants.wake_formula)
+        deduction = interaction.thrust_deduction(wake, constants.thrust_deduction_factor)
+        return PropulsionFactors(wake, deduction, constants.relative_rotative_efficiency)
+    stated_wake, stated_deduction = constants.stated_wake_fraction, constants.stated_thrust_deduction
+    if constants.wake_formula == "holtrop":
+        wake = own.wake_fractions[index]
+    elif constants.wake_formula == "stated" and stated_wake is not None:
+        wake = _within("w", stated_wake + (own.wake_fractions[index] - initial.wake_fractions[index]))
+    else:
+        wake = interaction.wake_fraction(block_coefficient, constants.wake_formula)
+    if constants.thrust_deduction_formula == "holtrop":
+        deduction = own.thrust_deduction
+    elif constants.thrust_deduction_formula == "stated" and stated_deduction is not None:
+        deduction = _within("t", stated_deduction + (own.thrust_deduction - initial.thrust_deduction))
+    else:
+        deduction = interaction.thrust_deduction(wake, constants.thrust_deduction_factor)
+    rotative = _chosen(
+        constants.relative_rotative_efficiency_formula,
+        constants.relative_rotative_efficiency,
+        own.relative_rotative_efficiency,
+        initial.relative_rotative_efficiency,
+    )
+    return PropulsionFactors(wake, deduction, rotative)
 
 
-def _deduction(
-    constants: ConstantsSection, wake: float, own: HoltropNumbers | None, initial: HoltropNumbers | None
-) -> float:
-    if constants.thrust_deduction_formula == "holtrop" and own is not None:
-        return own.thrust_deduction
-    if constants.thrust_deduction_formula == "stated" and constants.stated_thrust_deduction is not None:
-        if own is None or initial is None:
-            raise ValueError("a stated thrust deduction needs Holtrop's for the design and the initial one")
-        change = own.thrust_deduction - initial.thrust_deduction
-        return _within("t", constants.stated_thrust_deduction + change)
-    return interaction.thrust_deduction(wake, constants.thrust_deduction_factor)
+def _chosen(formula: str, stated: float, own: float, initial: float) -> float:
+    """The number as stated, or scaled with Holtrop's (stated for the initial design), or Holtrop's own."""
+    if formula == "holtrop":
+        return own
+    return stated + (own - initial) if formula == "scaled" else stated
 
 
 def _within(name: str, value: float) -> float:

@@ -77,7 +77,7 @@ def _initial_holtrop(case: Case, volume: float) -> HoltropNumbers | None:
     design = case.initial.variables
     hull = build_hull(hull_variables(case.hull, design, volume))
     ship = holtrop_hull(hull, _counted_volume(case, design, hull, volume), case.constants)
-    return holtrop_numbers(ship, design.diameter, case.speeds, case.constants.viscosity)
+    return holtrop_numbers(ship, design.diameter, design.expanded_area_ratio, case.speeds, case.constants.viscosity)
 
 
 def _counted_volume(case: Case, variables: DesignVariables, hull: Hull, initial_volume: float) -> float:
@@ -105,8 +105,7 @@ def design_factors(
     if uses_holtrop(case.constants):
         volume = _counted_volume(case, variables, hull, basis.displaced_volume)
         ship = holtrop_hull(hull, volume, case.constants)
-    initial = None if basis.holtrop is None else basis.holtrop.form_factor
-    return resistance_factors(case, hull, ship, initial, form_factor), ship
+    return resistance_factors(case, hull, ship, basis.holtrop, form_factor), ship
 
 
 @dataclass(frozen=True)
@@ -151,11 +150,9 @@ def compute(case: Case, variables: DesignVariables, level: int, basis: Basis) ->
     cautions = unused_statements(constants)
     if ship is not None:
         speeds = tuple(froude * (constants.gravity * hull.length) ** 0.5 for froude in froude_numbers)
-        own = holtrop_numbers(ship, propeller.diameter, speeds, constants.viscosity)
+        own = holtrop_numbers(ship, propeller.diameter, propeller.expanded_area_ratio, speeds, constants.viscosity)
         cautions += holtrop_warnings(ship, speeds, constants.gravity)
-    propulsion = propulsion_factors(
-        constants, block_coefficient, propeller.expanded_area_ratio, len(froude_numbers), ship, own, basis.holtrop
-    )
+    propulsion = propulsion_factors(constants, block_coefficient, len(froude_numbers), own, basis.holtrop)
     conditions = tuple(
         condition_result(
             case,

@@ -138,12 +138,10 @@ def _constants(case: Case) -> Markup:
                 f"atmosphere {number_text(1e-3 * c.atmospheric_pressure, 1)} kPa, "
                 f"vapour {number_text(1e-3 * c.vapour_pressure, 2)} kPa",
             ),
-            ("form factor k on friction", _form_factor(c)),
+            ("form factor k on friction", _stated(c.form_factor_formula, number_text(c.form_factor, 3))),
             (
                 "correlation allowance",
-                "Holtrop and Mennen"
-                if c.correlation_allowance_formula == "holtrop"
-                else number_text(c.correlation_allowance, 6),
+                _stated(c.correlation_allowance_formula, number_text(c.correlation_allowance, 6)),
             ),
             (
                 "air drag",
@@ -155,9 +153,7 @@ def _constants(case: Case) -> Markup:
             ("thrust deduction t", _thrust_deduction(c)),
             (
                 "relative rotative efficiency",
-                "Holtrop and Mennen"
-                if c.relative_rotative_efficiency_formula == "holtrop"
-                else number_text(c.relative_rotative_efficiency, 3),
+                _stated(c.relative_rotative_efficiency_formula, number_text(c.relative_rotative_efficiency, 3)),
             ),
             ("sea margin", f"{number_text(100.0 * c.sea_margin, 1)} % on the brake power"),
             ("shaft efficiency", number_text(c.shaft_efficiency, 3)),
@@ -170,11 +166,8 @@ def _constants(case: Case) -> Markup:
 _CHANGE = "for the initial design, the others by the change of Holtrop and Mennen's"
 
 
-def _form_factor(c: ConstantsSection) -> str:
-    if c.form_factor_formula == "holtrop":
-        return "Holtrop and Mennen"
-    stated = number_text(c.form_factor, 3)
-    return stated if c.form_factor_formula == "stated" else f"{stated} {_CHANGE}"
+def _stated(formula: str, number: str) -> str:
+    return {"stated": number, "scaled": f"{number} {_CHANGE}", "holtrop": "Holtrop and Mennen"}[formula]
 
 
 def _wake(c: ConstantsSection) -> Words:

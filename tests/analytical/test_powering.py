@@ -124,22 +124,36 @@ OTHER = CASE.initial.variables.replaced({"draft": 14.1, "diameter": 8.6, "length
             "thrust_deduction",
         ),
         ({"form_factor_formula": "scaled"}, {"form_factor_formula": "holtrop"}, "form_factor"),
+        (
+            {"relative_rotative_efficiency_formula": "scaled"},
+            {"relative_rotative_efficiency_formula": "holtrop"},
+            "relative_rotative_efficiency",
+        ),
+        (
+            {"correlation_allowance_formula": "scaled"},
+            {"correlation_allowance_formula": "holtrop"},
+            "correlation_allowance",
+        ),
     ],
 )
 def test_what_is_stated_changes_by_the_formula(
     stated: dict[str, object], holtrop: dict[str, object], name: str
 ) -> None:
     def number(constants: dict[str, object], design: DesignVariables | None) -> float:
-        condition = computed(CASE.replaced("constants", **constants), design).conditions[0]
+        result = computed(CASE.replaced("constants", **constants), design)
+        condition = result.conditions[0]
+        if name == "correlation_allowance":
+            dynamic = 0.5 * CASE.constants.density * condition.speed**2 * result.hull.wetted_surface
+            return condition.correlation_resistance / dynamic
         if name == "form_factor":
             return condition.form_resistance / condition.friction_resistance
         return float(getattr(condition, name))
 
-    given = stated.get(f"stated_{name}", CASE.constants.form_factor)
+    given = stated.get(f"stated_{name}", getattr(CASE.constants, name, None))
     assert number(stated, None) == pytest.approx(given, abs=1e-14)
     change = number(holtrop, OTHER) - number(holtrop, None)
     assert number(stated, OTHER) - number(stated, None) == pytest.approx(change, abs=1e-12)
-    assert abs(change) > 1e-4
+    assert abs(change) > (1e-6 if name == "correlation_allowance" else 1e-4)
 
 
 def test_the_initial_formulas_come_back_from_a_run_file() -> None:
