@@ -11,7 +11,7 @@ import signal
 import sys
 import threading
 import webbrowser
-from collections.abc import Mapping, Sequence
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib.resources import as_file
 from pathlib import Path
@@ -21,8 +21,11 @@ import viser
 
 from explorer.layout import build_session, build_shared
 from explorer.server.access import Access, origin_of
+from explorer.server.notices import Notices
+from explorer.server.quiet import loud_again, quiet
 from explorer.server.security import address_of, free_port, secure_server
 from explorer.server.token import door, token_of
+from explorer.server.visitors import Visitors
 from explorer.server.worker import LatestWorker
 from explorer.services.library import RunLibrary, runs_folder
 from explorer.services.page_memory import PageMemory, remembered
@@ -91,16 +94,17 @@ class Explorer:
         self.trouble = ""
         if run is not None:
             self._open(run, read_only, run_asked)
-        self.access = Access(token, origins)
+        notices = Notices()
+        self.access = Access(token, origins, notices)
         self.server = secure_server(host, port, "hpsop", self.access)
+        self.quiet = quiet(self.server._event_loop, notices)
         self.state.hub.on(("draft",), self.services.runs.draft_changed)
         self.state.on_remember = lambda: worker.latest("memory", self._save_memory)
         # the run on display and the settings come back too
         self.state.hub.on(("draft", "library"), self._save_memory)
         self._gone = threading.Event()
         self.settings = build_shared(self.state, self.services, self.server)
-        self.server.on_client_connect(self._connect)
-        self.server.on_client_disconnect(self._disconnect)
+        self._visitors = Visitors(self.server, self._visited)
         # The initial design stands ready when the first browser asks.
         worker.latest("initial", self._warm_up)
         # The search's imports hold the interpreter for a second: not while the page loads, nor when Start is pressed.
@@ -126,22 +130,29 @@ class Explorer:
         except HpsopError as error:
             logging.getLogger("hpsop.explorer").error("the initial design cannot be computed: %s", error)
 
-    def _connect(self, client: viser.ClientHandle) -> None:
+    def _visited(self, client: viser.ClientHandle) -> Callable[[], None]:
+        """Build a browser's page; returns what takes it down again."""
+
         def notify(title: str, body: str, color: str) -> None:
             colors = {"red": (201, 42, 42), "yellow": (232, 163, 23), "green": (43, 138, 62), "blue": (25, 113, 194)}
             with contextlib.suppress(RuntimeError):
                 client.add_notification(title, body, auto_close_seconds=8.0, color=colors.get(color, (90, 90, 90)))
 
         session = Session(self.state, client.client_id, notify)
-        self.state.join(client.client_id, session)
-        build_session(session, self.services, client)
-        self.state.tell_all("people")
 
-    def _disconnect(self, client: viser.ClientHandle) -> None:
-        session = self.state.leave(client.client_id)
-        if session is not None:
+        def take_down() -> None:
+            self.state.leave(client.client_id)
             session.close()
+            self.state.tell_all("people")
+
+        self.state.join(client.client_id, session)
+        try:
+            build_session(session, self.services, client)
+        except BaseException:
+            take_down()
+            raise
         self.state.tell_all("people")
+        return take_down
 
     def _save_memory(self) -> None:
         with self.state.lock:
@@ -156,10 +167,12 @@ class Explorer:
     def close(self) -> None:
         """End the run (its file keeps everything) and the server; no process stays behind."""
         self._gone.set()
+        self._visitors.close()
         self.services.runs.close()
         # viser says goodbye on standard output, which is ours
         with contextlib.suppress(RuntimeError), contextlib.redirect_stdout(io.StringIO()):
             self.server.stop()
+        loud_again(self.quiet)
         self.state.worker.close()
 
 

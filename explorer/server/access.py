@@ -103,6 +103,8 @@ class Access:
             origins = request.headers.get_all("Origin")
             if len(origins) != 1 or not self._own(origins[0], host):
                 return self._foreign(origins, host)
+            if "viser-v" not in request.headers.get("Sec-WebSocket-Protocol", ""):
+                return _text(HTTPStatus.BAD_REQUEST, "only the page itself speaks to this server")
             return answer(connection, request)
         kept = [(name, value) for name, value in query if name != "token" and name not in _OF_VISER]
         if len(kept) != len(query):

@@ -12,7 +12,6 @@ that arrives is checked: a browser may send anything.
 from __future__ import annotations
 
 import json
-import math
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -27,6 +26,8 @@ from hpsop_core.markup import Markup, fill
 
 PAGE_VERSION = "1"
 _MAX_MESSAGE = 6000
+# no gesture of ours means a number beyond this; its square still is one
+_MOST = 1e15
 _POINTS = ("x", "y", "fx", "fy", "x0", "x1", "y0", "y1", "fx0", "fx1", "fy0", "fy1")
 _NUMBERS = (*_POINTS, "factor", "width", "height", "drag")
 _TEXTS = ("t", "chart", "name", "arg", "key", "browser")
@@ -41,8 +42,8 @@ class PageEvent:
         chart: the chart it happened on, or "".
         name, arg: of a pressed button (kind "act").
         key: of the keyboard.
-        numbers: finite numbers by name: x, y in the chart's data, fx, fy in fractions of its plot area; of a pan also
-            drag, which tells one drag from the next.
+        numbers: numbers of a sensible size by name: x, y in the chart's data, fx, fy in fractions of its plot area; of
+            a pan also drag, which tells one drag from the next.
         shift: whether Shift was held.
         browser: the browser's own name for itself (hello only).
     """
@@ -57,8 +58,8 @@ class PageEvent:
     browser: str = ""
 
 
-def _finite(value: object) -> float | None:
-    if isinstance(value, bool) or not isinstance(value, (int, float)) or not math.isfinite(value):
+def _sensible(value: object) -> float | None:
+    if isinstance(value, bool) or not isinstance(value, (int, float)) or not -_MOST <= value <= _MOST:
         return None
     return float(value)
 
@@ -78,8 +79,8 @@ def parse_events(text: object, seen: int) -> tuple[list[PageEvent], int]:
     for item in raw:
         if not isinstance(item, dict):
             continue
-        number = _finite(item.get("n"))
-        if number is None or number <= seen or number > 2**53:
+        number = _sensible(item.get("n"))
+        if number is None or number <= seen:
             continue
         newest = max(newest, int(number))
         texts = {name: str(item.get(name, ""))[:200] for name in _TEXTS}
@@ -90,7 +91,7 @@ def parse_events(text: object, seen: int) -> tuple[list[PageEvent], int]:
                 name=texts["name"],
                 arg=texts["arg"],
                 key=texts["key"],
-                numbers={name: value for name in _NUMBERS if (value := _finite(item.get(name))) is not None},
+                numbers={name: value for name in _NUMBERS if (value := _sensible(item.get(name))) is not None},
                 shift=item.get("shift") is True,
                 browser=texts["browser"],
             )

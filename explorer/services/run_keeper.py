@@ -291,6 +291,7 @@ class RunKeeper:
                 *variable_quantities(case.initial.variables),
                 *all_quantities(condition_names(case)),
             )
+            self._table = np.zeros((0, len(self._quantities)))
         status, message = self._status(reader)
         if reader is None:
             return RunPicture(self.path.name, case, status, message, self.driven)
@@ -362,7 +363,7 @@ class RunKeeper:
         order = np.argsort(ids, kind="stable")
         self._ids = ids[order]
         self._rows = np.concatenate([self._rows, np.array(rows, dtype=float)])[order]
-        self._table = np.concatenate([self._table.reshape(-1, len(self._quantities)), np.array(table)])[order]
+        self._table = np.concatenate([self._table, np.array(table)])[order]
 
     def _complete_until(self, reader: RunReader) -> int:
         """Ids up to here have all been read: those of finished generations that were pictured before."""

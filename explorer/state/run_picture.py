@@ -75,6 +75,21 @@ class RunPicture:
     seconds_left: float | None = None
     elapsed: float = 0.0
 
+    def __post_init__(self) -> None:
+        """One consistent picture: as many of everything as there are designs, a column of the table for each key.
+
+        Raises:
+            ValueError: it would be made of two different moments.
+        """
+        count = len(self.ids)
+        flags = (self.level, self.generation, self.feasible, self.failed, self.by_hand)
+        if (
+            any(values.shape != (count,) for values in flags)
+            or self.objectives.shape != (count, 2)
+            or self.table.shape != (count, len(self.columns))
+        ):
+            raise ValueError("a picture of a run needs as many rows as designs and as many columns as keys")
+
     @property
     def total_generations(self) -> int:
         """Planned generations of both levels."""

@@ -220,6 +220,8 @@ def test_nonsense_on_the_hidden_channel_changes_nothing(explorer: Explorer, host
         {"t": "act", "name": "step", "arg": "x" * 300},
         {"t": "key", "key": "ArrowRight"},
         {"t": "size", "width": -1, "height": 1e9},
+        {"t": "pan", "chart": "pareto", "fx": 10**400, "fy": 0, "drag": 2},
+        {"t": "zoom", "chart": "pareto", "fx": 1e14, "fy": 0.5, "factor": 1.1},
         {"t": "hello", "browser": {"a": 1}, "width": 1e99, "height": 5},
         ["no", "object"],
     ]

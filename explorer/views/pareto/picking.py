@@ -18,6 +18,13 @@ from explorer.views.tables import design_card
 
 # a click so near to the initial design's mark means it, px
 _NEAR = 14.0
+# objectives are parts of the initial design's: what is zoomed to, at the least, and where the chart ends
+_LEAST_SPAN, _FARTHEST = 1e-6, 1e3
+
+
+def _seen(limits: Limits) -> bool:
+    """Whether a chart can be drawn within these: objectives are of the order of one."""
+    return all(_LEAST_SPAN < high - low < _FARTHEST and max(abs(low), abs(high)) < _FARTHEST for low, high in limits)
 
 
 class ParetoPicking:
@@ -116,7 +123,7 @@ class ParetoPicking:
         (x0, x1), (y0, y1) = self._chart.limits
         x, y = x0 + fx * (x1 - x0), y0 + fy * (y1 - y0)
         limits = ((x + (x0 - x) * factor, x + (x1 - x) * factor), (y + (y0 - y) * factor, y + (y1 - y) * factor))
-        if all(1e-6 < high - low < 1e3 for low, high in limits):
+        if _seen(limits):
             self._chart.limits = limits
             self._session.zoom("pareto", limits)
 
@@ -128,7 +135,9 @@ class ParetoPicking:
             self._panned = (drag, self._chart.limits)
         (x0, x1), (y0, y1) = self._panned[1]
         dx, dy = fx * (x1 - x0), fy * (y1 - y0)
-        self._session.zoom("pareto", ((x0 - dx, x1 - dx), (y0 - dy, y1 - dy)))
+        limits = ((x0 - dx, x1 - dx), (y0 - dy, y1 - dy))
+        if _seen(limits):
+            self._session.zoom("pareto", limits)
 
     def _box(self, event: PageEvent) -> None:
         x0, x1, y0, y1 = (event.numbers.get(name) for name in ("x0", "x1", "y0", "y1"))
