@@ -219,8 +219,9 @@ class SettingsView:
     def _rested(self, section: str, name: str, serial: int, why: str, client_id: int) -> None:
         if self._typing.get((section, name)) != serial:
             return
-        self._app.refuse(client_id, why)
+        # taken back before it is told: who reads the words sees the field as it is
         self._show_field(section, name)
+        self._app.refuse(client_id, why)
         self._app.change_draft(lambda draft: draft.release(section, name))
 
     def set_field(self, section: str, name: str, value: Any) -> None:
