@@ -162,9 +162,17 @@ def _with_bulb(x: float, z: float) -> float:
     return float(max(body, bulb))
 
 
-def _exact(form: Callable[[float, float], float], last: float) -> tuple[float, float]:
+def _with_dome(x: float, z: float) -> float:
+    """A flat bottom on the baseline and a sonar dome below the bow that goes 1.5 m deeper."""
+    s = (x - 50.0) / 50.0
+    body = 7.0 * max(0.0, 1.0 - abs(s) ** 2.5) * (1.0 - 0.6 * (1.0 - min(z / 6.0, 1.0)) ** 3) if z >= 0.0 else 0.0
+    across = max(0.0, 1.0 - ((x - 92.0) / 8.0) ** 2 - (z / 1.5) ** 2)
+    return float(max(body, 1.4 * np.sqrt(across)))
+
+
+def _exact(form: Callable[[float, float], float], last: float, bottom: float) -> tuple[float, float]:
     """Volume and its centre by a fine trapezoidal rule on the formula."""
-    x, z = np.linspace(0.0, last, 1036), np.linspace(0.0, 6.0, 301)
+    x, z = np.linspace(0.0, last, 1036), np.linspace(bottom, 6.0, 376)
     areas = 2.0 * np.trapezoid(np.array([[form(a, b) for b in z] for a in x]), z, axis=1)
     volume = float(np.trapezoid(areas, x))
     return volume, float(np.trapezoid(areas * x, x)) / volume
@@ -178,8 +186,10 @@ def _exact(form: Callable[[float, float], float], last: float) -> tuple[float, f
         (_with_bulb, [0, 1, 2.5, 5, 7.5, *range(10, 90, 5), 90, 92, 94, 96, 97, 98, 99, 99.4, 99.8, 100.2, 100.8, 101.5,
                       102.2, 102.8, 103.2, 103.5],
          [0, 0.3, 0.7, 1, 1.5, 2, 2.5, 3, 3.5, 4, 4.3, 4.7, 5, 5.4, 6, 7, 8], 103.5, 0.1),
+        (_with_dome, [*range(0, 80, 5), 80, 82, 84, 86, 88, 90, 92, 94, 96, 98, 99, 99.5, 100],
+         [-1.5, -1.35, -1.1, -0.8, -0.4, 0, 0.4, 0.8, 1.3, 2, 3, 4, 5, 6, 7, 8], 100.0, 0.1),
     ],
-    ids=["table ends at the post", "gap between bulb and stem"],
+    ids=["table ends at the post", "gap between bulb and stem", "dome below the baseline"],
 )  # fmt: skip
 def test_ends_as_tables_give_them(
     tmp_path: Path,
@@ -192,7 +202,7 @@ def test_ends_as_tables_give_them(
     y = np.array([[form(x, z) for z in heights] for x in stations])
     path = written(tmp_path / "ship.csv", long_form(stations, heights, y))
     told = read_hull(path, ReadOptions(length=100.0, draft=6.0)).understood
-    volume, place = _exact(form, last)
+    volume, place = _exact(form, last, min(heights))
     # Half a per cent: stations 5 m apart and waterlines 1 m apart say no more of the formula.
     assert told.displaced_volume == pytest.approx(volume, rel=5e-3)
     assert told.buoyancy_centre == pytest.approx(place, abs=centre)

@@ -84,7 +84,10 @@ def _run(heights: Array, widths: Array, first: int, last: int, below: int) -> Ar
         points.append((0.0, float(heights[0])))
     else:
         second = min(first + 1, len(heights) - 1)
-        points.append((0.0, closing_place(heights[[first - 1, first, second]], widths[[first, second]])))
+        place = closing_place(heights[[first - 1, first, second]], widths[[first, second]])
+        # Where a dome or keel elsewhere needs rows below it, the row of the baseline still holds the flat of bottom.
+        on_baseline = heights[first] == 0.0 and place == heights[first - 1]
+        points.append((0.0, 0.0 if on_baseline else place))
     points += [(float(widths[k]), float(heights[k])) for k in range(first, last + 1)]
     if last < below:
         second = max(last - 1, 0)

@@ -16,7 +16,7 @@ ASSUMED_BREADTH_TO_DRAFT = 2.5
 # Station numbers count tenths or twentieths of Lpp.
 STATION_COUNTS = (20, 10, 40, 100)
 # LCF aft of LCB by this part of the length is told from rounding: the fuller upper waterlines are at the stern.
-CLEAR_CENTRES = 0.004
+CLEAR_CENTRES = 0.008
 # A waterline this close to the draft, as a part of it, is the waterline of the draft: numbers are rounded in files.
 SAME_HEIGHT = 1e-4
 

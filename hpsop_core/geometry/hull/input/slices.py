@@ -14,6 +14,8 @@ STATIONS, WATERLINES, ABOVE = 121, 33, 8
 # A reading this part of the greatest half-breadth below all its neighbours fell into a crack between faces; it is read
 # this part of the length beside it.
 LEAST_DROP, CRACK = 0.005, 5e-4
+# Deeper than this part of the draft below the baseline there is a dome or a keel.
+LEAST_DOME = 0.01
 
 
 def slice_axes(low: Array, high: Array, draft: float) -> tuple[Array, Array]:
@@ -24,6 +26,9 @@ def slice_axes(low: Array, high: Array, draft: float) -> tuple[Array, Array]:
     bottom = float(low[2])
     z = bottom + (draft - bottom) * (0.35 * part**2 + 0.65 * part)
     z[-1] = draft
+    if bottom < -LEAST_DOME * draft:
+        # The flat of bottom on the baseline, beside a dome or keel that goes deeper.
+        z = np.unique(np.append(z, 0.0))
     if high[2] > 1.02 * draft:
         z = np.concatenate([z, np.linspace(draft, float(high[2]) * (1.0 - 1e-6), ABOVE)[1:]])
     return x, z
@@ -96,6 +101,7 @@ def _half_breadths(cut: Array, x: float, z: Array, mesh: ShipTriangles, lift: fl
     start, end = segments[:, 0], segments[:, 1]
     # The lowest row stands for the flat of bottom and is read just above it.
     reading = np.maximum(z, z[0] + 1e-3 * draft)
+    reading = np.where((z == 0.0) & (z[0] < 0.0), 1e-3 * draft, reading)
     reading = np.where(z >= 0.999 * float(np.max(z)), float(np.max(z)) - 1e-5 * draft, reading)
     # Patches often meet at the still water itself: a hair beside it no crossing falls between them.
     for k, height in enumerate(reading + (lift - 2e-6 * draft)):

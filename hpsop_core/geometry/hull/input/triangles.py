@@ -179,7 +179,7 @@ def _bow(vertices: Array, faces: IntArray, draft: float) -> str | None:
         return None
     centres = [float(weight[part] @ centre[part, 0] / weight[part].sum()) for part in (low, top)]
     apart = (centres[0] - centres[1]) / span
-    return None if abs(apart) < 0.006 else "+x" if apart > 0.0 else "-x"
+    return None if abs(apart) < 0.008 else "+x" if apart > 0.0 else "-x"
 
 
 def in_ship_axes(file: TriangleFile, options: ReadOptions) -> ShipTriangles:
