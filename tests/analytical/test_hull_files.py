@@ -24,7 +24,8 @@ from hull_files import (
     written,
 )
 
-from hpsop_core.geometry.hull.hull import load_parent_hull
+from hpsop_core.case.case import load_case
+from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.geometry.hull.input import Axes, ReadOptions, ShipTable, hull_from_table, read_hull, read_table
 from hpsop_core.hydro import michell
 
@@ -322,8 +323,6 @@ def test_a_mesh_that_ends_at_its_waterline(tmp_path: Path) -> None:
 
 def test_own_mesh_formats_come_back(tmp_path: Path) -> None:
     """What the program exports it reads again, with the propeller left out."""
-    from hpsop_core.case.case import load_case
-    from hpsop_core.evaluation.shapes import design_hull, design_propeller
     from hpsop_core.export.meshes import write_glb
 
     case = load_case("dtc-p4119")
@@ -350,16 +349,17 @@ def test_own_surfaces_come_back(tmp_path: Path, suffix: str) -> None:
     """What the program exports for CAD it reads again."""
     from hpsop_core.export.rhino import write_3dm
     from hpsop_core.export.solids import sewn_solid, write_iges, write_step
-    from hpsop_core.export.surfaces import hull_surfaces
+    from hpsop_core.export.surfaces import design_surfaces, hull_surfaces
 
-    parent = load_parent_hull()
-    hull = parent.transform(parent.length, parent.breadth, parent.draft)
-    surfaces, _ = hull_surfaces(hull)
+    case = load_case("dtc-p4119")
+    hull = design_hull(case, case.initial.variables)
     path = tmp_path / f"ship.{suffix}"
     if suffix == "3dm":
-        write_3dm(path, surfaces, "a ship")
+        write_3dm(path, design_surfaces(hull, design_propeller(case, case.initial.variables))[0], "a ship")
     else:
-        {"step": write_step, "iges": write_iges}[suffix](path, [sewn_solid("hull", surfaces)], "a ship")
+        body = sewn_solid("hull", hull_surfaces(hull)[0])
+        {"step": write_step, "iges": write_iges}[suffix](path, [body], "a ship")
     table = read_table(path, ReadOptions(length=355.0, draft=14.5))
+    assert any("propeller" in note for note in table.notes) == (suffix == "3dm")
     _same_volume(table, hull.hydrostatics.displaced_volume)
     assert table.unit == ("m" if suffix == "3dm" else "mm")

@@ -88,8 +88,6 @@ def _components(count: int, faces: IntArray) -> tuple[int, IntArray]:
 def without_appendages(mesh: ShipTriangles) -> tuple[Array, tuple[str, ...]]:
     """Triangles (m, 3, 3) of the hull itself, and a note for every separate small piece that was left out."""
     corners = np.asarray(mesh.vertices[mesh.faces])
-    if not mesh.closed:
-        return corners, ()
     _, of_face = _components(len(mesh.vertices), mesh.faces)
     # Vertices without faces are pieces too; only those with faces count.
     names, of_face = np.unique(of_face, return_inverse=True)

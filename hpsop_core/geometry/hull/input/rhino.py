@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from itertools import pairwise
 from pathlib import Path
 from typing import Any
@@ -14,6 +15,10 @@ from hpsop_core.geometry.hull.input.triangles import TriangleFile
 from hpsop_core.typing_aliases import Array, IntArray
 
 SUFFIXES = (".3dm",)
+# What is no hull, by the name of its object or layer.
+_APPENDAGES = re.compile(
+    r"propeller|screw|rudder|strut|bracket|shaft(?!t)|bilge keel|thruster|appendage", re.IGNORECASE
+)
 # Points along each side of every knot span of a surface, and the greatest number across a whole surface.
 POINTS_PER_SPAN, MOST_POINTS = 4, 400
 
@@ -36,8 +41,15 @@ def read_rhino(path: Path) -> TriangleFile:
         raise InputError(f"{path.name}: cannot be read as a 3dm file")
     pieces: list[tuple[Array, IntArray]] = []
     whole_trimmed = 0
+    layers = {layer.Index: str(layer.FullPath or layer.Name) for layer in file.Layers}
+    left_out = set()
     for item in file.Objects:
+        words = f"{item.Attributes.Name or ''} {layers.get(item.Attributes.LayerIndex, '')}"
         found, trimmed = _triangles(item.Geometry)
+        named = _APPENDAGES.search(words)
+        if named is not None:
+            left_out |= {named.group(0).lower()} if found else set()
+            continue
         pieces += found
         whole_trimmed += trimmed
     if not pieces:
@@ -46,6 +58,8 @@ def read_rhino(path: Path) -> TriangleFile:
     vertices = np.concatenate([vertices for vertices, _ in pieces])
     faces = np.concatenate([faces + first for (_, faces), first in zip(pieces, start, strict=True)])
     vertices, faces, notes = tidied(vertices, faces)
+    if left_out:
+        notes = (*notes, f"left out by the names of their objects or layers: {', '.join(sorted(left_out))}")
     if whole_trimmed:
         notes = (*notes, f"warning: {whole_trimmed} trimmed faces carry no mesh and are read untrimmed")
     unit = {"Millimeters": "mm", "Centimeters": "cm", "Meters": "m", "Feet": "ft", "Inches": "in"}.get(
