@@ -26,7 +26,10 @@ from hpsop_core.hydro.operating_point import PropellerCurve
 from hpsop_core.typing_aliases import Array
 
 FROUDE_MARGIN = 0.05
-"""Resistance curves reach this far beyond the conditions' Froude numbers, within 0.1 to 0.5."""
+"""Resistance curves reach this far beyond the conditions' Froude numbers, up to 0.5."""
+
+SLOWEST = 0.15
+"""They go down no further than this, or than the slowest condition: the waves are then finer than level 2's grid."""
 
 CURVE_STEP = 0.05
 """Steps of the advance coefficient in an evaluation's open-water curve."""
@@ -88,7 +91,8 @@ def froude_range(evaluation: Evaluation, above: float = FROUDE_MARGIN, step: flo
         step: between them.
     """
     conditions = [condition.froude_number for condition in evaluation.conditions]
-    low, high = max(0.1, min(conditions) - FROUDE_MARGIN), min(0.5, max(conditions) + above)
+    slowest = min(conditions)
+    low, high = max(min(SLOWEST, slowest), slowest - FROUDE_MARGIN), min(0.5, max(conditions) + above)
     steps = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
     return tuple(sorted({*(round(float(value), 6) for value in steps), *conditions}))
 

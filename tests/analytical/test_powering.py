@@ -13,7 +13,7 @@ from hpsop_core.case.case import KNOT, Case, case_from_toml
 from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
-from hpsop_core.evaluation.curves import resistance_points, thrust_curves
+from hpsop_core.evaluation.curves import froude_range, resistance_points, thrust_curves
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Ok, evaluation_from_dict
 from hpsop_core.quantities import condition_names, condition_quantities
@@ -299,3 +299,11 @@ def test_each_condition_lies_on_the_thrust_curve_whatever_the_formulas() -> None
     for condition in result.conditions:
         place = curves.froude_number.tolist().index(condition.froude_number)
         assert curves.required[place] == pytest.approx(condition.thrust, rel=1e-9)
+
+
+def test_curves_of_a_slow_profile_begin_where_level_2_has_waves() -> None:
+    slow = CASE.replaced("conditions", speeds_knots=[17, 21, 25], weights=[0.3, 0.4, 0.3])
+    result = computed(slow)
+    # At 17 kn the Froude number is 0.148; level 2 has no waves of this hull at 0.1, and the whole curve would fail.
+    assert min(froude_range(result)) == result.conditions[0].froude_number
+    assert min(froude_range(computed(CASE))) == pytest.approx(0.17, abs=1e-12)
