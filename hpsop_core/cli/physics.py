@@ -79,18 +79,23 @@ def add_parsers(commands: Any) -> None:
 
 def _evaluate(arguments: argparse.Namespace) -> int:
     from hpsop_core import evaluate
-    from hpsop_core.evaluation.hull_answer import parent_hull
 
     case, variables = case_and_design(arguments.case, arguments.changes)
     result = evaluate(case, variables, arguments.level)
-    report = parent_hull(case.hull).fit_report
-    if report is not None:
-        print(report, file=sys.stderr)
+    _tell_own_hull(case)
     if arguments.json:
         print_json(result.as_dict())
     else:
         print_evaluation(result)
     return 0 if result.ok else 1
+
+
+def _tell_own_hull(case: Case) -> None:
+    """What was understood of the hull file that a case names, on standard error."""
+    from hpsop_core.evaluation.hull_answer import own_hull
+
+    if case.hull.own_file:
+        print(own_hull(case.hull).understood, file=sys.stderr)
 
 
 def print_evaluation(result: Evaluation) -> None:
@@ -186,8 +191,10 @@ def _water(word: str | None) -> tuple[float | None, float | None]:
 
 
 def _resistance(arguments: argparse.Namespace) -> int:
-    from hpsop_core import load_hull, resistance
+    from hpsop_core import resistance
+    from hpsop_core.case.case import Case
     from hpsop_core.evaluation.resistance import FORM_FACTOR_RULE, FROUDE_RULE
+    from hpsop_core.geometry.from_files import read_own_hull
 
     froude_numbers = number_list(arguments.froude, FROUDE_RULE, "--froude")
     form_factor = checked_option(arguments.form_factor, FORM_FACTOR_RULE, "--form-factor")
@@ -197,14 +204,16 @@ def _resistance(arguments: argparse.Namespace) -> int:
             "resistance: give either a CASE, or --hull FILE (or --offsets FILE.csv) with --length and --draft"
         )
     subject: Case | Hull
-    variables = None
+    variables = told = None
     options = read_options(arguments)
     if files:
         if options.length is None or options.draft is None:
             raise InputError("resistance: a hull file needs --length (Lpp) and --draft, in metres")
         if arguments.changes:
             raise InputError("resistance: --set changes a case's design; a hull file is taken as it is")
-        subject = load_hull(files[0], options.length, options.draft, options.unit, options.axes, options.breadth)
+        file = read_own_hull(files[0], options)
+        told = file.understood
+        subject = file.hull
     else:
         if options != ReadOptions():
             raise InputError(
@@ -216,8 +225,10 @@ def _resistance(arguments: argparse.Namespace) -> int:
         subject, froude_numbers, arguments.level, variables,
         form_factor=form_factor, density=density, viscosity=viscosity,
     )  # fmt: skip
-    if result.hull.parent.fit_report is not None:
-        print(result.hull.parent.fit_report, file=sys.stderr)
+    if told is not None:
+        print(told, file=sys.stderr)
+    elif isinstance(subject, Case):
+        _tell_own_hull(subject)
     if arguments.json:
         print_json(result.as_dict())
         return 0

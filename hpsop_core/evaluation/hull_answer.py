@@ -11,7 +11,7 @@ from hpsop_core.case.sections import HullSection
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.evaluation.levels import WaveAnswer, level_of
 from hpsop_core.geometry.hull.hull import Hull, ParentHull, load_parent_hull
-from hpsop_core.geometry.hull.input import hull_from_table
+from hpsop_core.geometry.hull.input import HullFile, hull_from_table
 from hpsop_core.hydro.friction import ittc57_coefficient
 from hpsop_core.hydro.powering import ResistanceFactors, resistance_parts
 
@@ -58,15 +58,22 @@ class ResistancePoint:
 
 
 @lru_cache(maxsize=8)
+def own_hull(section: HullSection) -> HullFile:
+    """The hull of one's own that a case names, with what was understood of its file.
+
+    Raises:
+        InputError: a file that cannot be used.
+    """
+    return hull_from_table(own_table(section), section.shaft_height, section.boss_x)
+
+
 def parent_hull(section: HullSection) -> ParentHull:
     """The parent hull that a case names.
 
     Raises:
         InputError: a file that cannot be used.
     """
-    if section.own_file:
-        return hull_from_table(own_table(section), section.shaft_height, section.boss_x).parent
-    return load_parent_hull(section.parent)
+    return own_hull(section).parent if section.own_file else load_parent_hull(section.parent)
 
 
 @lru_cache(maxsize=512)

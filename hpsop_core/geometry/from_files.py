@@ -7,7 +7,7 @@ from pathlib import Path
 from hpsop_core.assets import SHIPPED_HULLS, SHIPPED_PROPELLERS
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.hull.hull import Hull, load_parent_hull
-from hpsop_core.geometry.hull.input import Axes, ReadOptions, read_hull
+from hpsop_core.geometry.hull.input import Axes, HullFile, ReadOptions, read_hull
 from hpsop_core.geometry.propeller import propeller as propellers
 from hpsop_core.geometry.propeller.propeller import Propeller, propeller_family
 from hpsop_core.model_test import MODEL_DIAMETER
@@ -49,20 +49,29 @@ def load_hull(
             raise InputError(f"hull '{source}' is shipped with its own length, draft and unit; leave them away")
         parent = load_parent_hull(str(source))
     else:
-        path = Path(source)
-        if length is None or draft is None:
-            raise InputError(f"{path.name}: a hull from a file needs length (Lpp) and draft, in metres")
-        if path.suffix.lower() in UNITLESS_SUFFIXES and unit is None:
-            kind = path.suffix[1:].upper()
-            raise InputError(f"{path.name}: an {kind} carries no unit; give unit m, mm, cm, ft or in")
         try:
             options = ReadOptions(
                 length, draft, breadth, unit, axes if isinstance(axes, Axes) else Axes.from_words(axes)
             )
         except InputError as problem:
-            raise InputError(f"{path.name}: {problem}") from problem
-        parent = read_hull(path, options).parent
+            raise InputError(f"{Path(source).name}: {problem}") from problem
+        return read_own_hull(source, options).hull
     return parent.transform(parent.length, parent.breadth, parent.draft)
+
+
+def read_own_hull(source: str | Path, options: ReadOptions) -> HullFile:
+    """A hull from a file with what was understood of it; length, draft and a mesh's unit are never assumed here.
+
+    Raises:
+        InputError: one of them is not stated, or a file that cannot be used.
+    """
+    path = Path(source)
+    if options.length is None or options.draft is None:
+        raise InputError(f"{path.name}: a hull from a file needs length (Lpp) and draft, in metres")
+    if path.suffix.lower() in UNITLESS_SUFFIXES and options.unit is None:
+        kind = path.suffix[1:].upper()
+        raise InputError(f"{path.name}: an {kind} carries no unit; give unit m, mm, cm, ft or in")
+    return read_hull(path, options)
 
 
 def load_propeller(source: str | Path, blade_count: int | None = None, diameter: float = MODEL_DIAMETER) -> Propeller:

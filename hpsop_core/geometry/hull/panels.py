@@ -116,8 +116,8 @@ def transom_froude_number(froude_number: float, length: float, depth: float) -> 
 
 def _transom_depth(edge: Array, draft: float) -> float:
     """How deep a transom's section (n, 3) is in the water, m; a post below it, in the centreplane, is no transom."""
-    broad = edge[:, 1] > 1e-3 * float(np.max(edge[:, 1]))
-    return draft - float(np.min(edge[broad, 2]))
+    first = int(np.argmax(edge[:, 1] > 1e-3 * float(np.max(edge[:, 1]))))
+    return draft - float(np.min(edge[max(first - 1, 0) :, 2]))
 
 
 def _tail_points(edge: Array, draft: float, length: float, slowest: float | None) -> Array:

@@ -10,6 +10,8 @@ from hpsop_core.geometry.hull.input.ship_table import ShipTable
 from hpsop_core.typing_aliases import Array, BoolArray
 
 FEWEST_STATIONS, FEWEST_WATERLINES = 7, 5
+# Stations closer than this part of the table's length are one.
+LEAST_STEP = 1e-6
 # A reading further than this from all its neighbours, as a part of the greatest half-breadth, is a slip of the pen.
 LARGEST_DENT = 0.05
 # A bottom that begins this part of the draft above z = 0 is worth a word, and beyond the second number a wrong volume.
@@ -34,6 +36,12 @@ def check_counts(table: ShipTable) -> None:
         raise InputError(f"{table.name}: {len(table.x)} stations; at least {FEWEST_STATIONS} are needed")
     if len(table.z) < FEWEST_WATERLINES:
         raise InputError(f"{table.name}: {len(table.z)} waterlines; at least {FEWEST_WATERLINES} are needed")
+    k = int(np.argmin(np.diff(table.x)))
+    if float(table.x[k + 1] - table.x[k]) < LEAST_STEP * float(np.ptp(table.x)):
+        raise InputError(
+            f"{table.name}{table.row(k + 1, 0)}: {table.station_name(float(table.x[k + 1]))} is given twice or lies on "
+            "its neighbour; keep one"
+        )
 
 
 def check_size(table: ShipTable) -> tuple[str, ...]:

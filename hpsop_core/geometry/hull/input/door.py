@@ -8,7 +8,7 @@ from pathlib import Path
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.delimited_text import TextTable, read_text_table, text_table
 from hpsop_core.geometry.hull.fit_table import SHAFT_HEIGHT_TO_DRAFT, parent_from_table
-from hpsop_core.geometry.hull.hull import ParentHull
+from hpsop_core.geometry.hull.hull import Hull, ParentHull
 from hpsop_core.geometry.hull.input import cad, mesh, rhino, triangles
 from hpsop_core.geometry.hull.input.checks import check_counts, check_points, check_size
 from hpsop_core.geometry.hull.input.long_table import COLUMNS, is_long_form, read_long_table
@@ -40,6 +40,11 @@ class HullFile:
     table: ShipTable
     parent: ParentHull
     understood: UnderstoodHull
+
+    @property
+    def hull(self) -> Hull:
+        """The hull at its own dimensions."""
+        return self.parent.transform(self.parent.length, self.parent.breadth, self.parent.draft)
 
 
 def read_table(path: Path | str, options: ReadOptions) -> ShipTable:

@@ -153,6 +153,8 @@ def read_long_table(table: TextTable, options: ReadOptions) -> FileTable:
     if numbered:
         units["number"] = "m"
     rows = _by_station(name, _rows(table, places, units))
+    if not rows:
+        raise InputError(f"{name}: holds no readings below its first line; give one a row")
     rising = len(rows) < 2 or next((b[1] > a[1] for a, b in pairwise(rows) if b[1] != a[1]), True)
     # A table from the bow aft is one that falls all the way; one that falls once is out of order.
     falls = [b[1] < a[1] for a, b in pairwise(rows) if b[1] != a[1]]

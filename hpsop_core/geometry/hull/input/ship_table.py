@@ -118,9 +118,10 @@ def bow_of(x: Array, z: Array, y: Array, draft: float) -> str | None:
     width = np.array([np.interp([0.25 * draft, 0.5 * draft, draft], z, row) for row in y])
     low = width[:, 0] + width[:, 1]
     top = width[:, 2]
-    if min(float(np.sum(low)), float(np.sum(top))) <= 0.0:
+    areas = [float(np.trapezoid(w, x)) for w in (low, top)]
+    if min(areas) <= 0.0:
         return None
-    centres = [float(np.trapezoid(w * x, x) / np.trapezoid(w, x)) for w in (low, top)]
+    centres = [float(np.trapezoid(w * x, x)) / area for w, area in zip((low, top), areas, strict=True)]
     apart = (centres[0] - centres[1]) / float(np.ptp(x))
     if abs(apart) < CLEAR_CENTRES:
         return None
