@@ -75,6 +75,7 @@ class RunKeeper:
         self._begun = False
         self._error = ""
         self._trouble = ""
+        self._shape = ""
         self._event: RunEvent | None = None
         self._closed = threading.Event()
         self._guard = threading.RLock()
@@ -200,6 +201,7 @@ class RunKeeper:
         self._on_news()
 
     def _watch(self) -> None:
+        self._check_ship()
         last: tuple[object, ...] = ()
         now: tuple[object, ...]
         while not self._closed.wait(_POLL_SECONDS):
@@ -216,6 +218,15 @@ class RunKeeper:
                 self._trouble = str(error) if self._picture is not None else ""
             if now != last:
                 last = now
+                self._on_news()
+
+    def _check_ship(self) -> None:
+        """A run of an earlier version may name a hull file that is gone or changed: its numbers stand alone then."""
+        if self._reader is not None:
+            try:
+                self._reader.check_ship()
+            except HpsopError as error:
+                self._shape = str(error)
                 self._on_news()
 
     def _release(self) -> None:
@@ -388,4 +399,4 @@ class RunKeeper:
         if reader is None:
             return IDLE, ""
         state, reason = reader.state()
-        return _STATES.get(state, state), reason
+        return _STATES.get(state, state), reason or self._shape

@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import concurrent.futures
+import itertools
+import math
 import time
 from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Future
-from dataclasses import dataclass, field
+from dataclasses import dataclass
 from typing import Any
 
 from hpsop_core.case.case import Case
@@ -22,6 +24,7 @@ _STALL = 1.0  # seconds beyond a tick from which this program itself was stopped
 _LAST_RESULTS = 5.0  # seconds to collect what else comes from a pool that broke
 _DEATHS_ALLOWED = 2
 _TIMEOUTS_ALLOWED = 2
+_QUICK = 0.05  # seconds: evaluations below have a spare one queued behind each; see ``BatchEvaluator._room``
 _RECONNECT_INTERVAL = 2.0  # seconds between tries to reach a cluster that does not answer
 
 
@@ -57,7 +60,7 @@ class _Job:
     deaths: int = 0
     timeouts: int = 0
     alone: bool = False
-    started: float = field(default=0.0)
+    started: float | None = None
 
 
 class BatchEvaluator:
@@ -94,6 +97,7 @@ class BatchEvaluator:
     ) -> None:
         self._lost = lost
         self._warm_up = warm_up
+        self._typical = math.inf  # seconds of an evaluation
         self._looked = time.monotonic()
         self._workers = workers
         self._evaluate = evaluate
@@ -158,11 +162,19 @@ class BatchEvaluator:
                 job.alone = True
                 self._start(job)
             return
-        while self._queue and len(self._under_way) < (slots := self._workers.slots):
-            job = self._queue.popleft()
-            job.alone = slots == 1
-            if not self._start(job):
+        while self._queue and len(self._under_way) < self._room():
+            if not self._start(self._queue.popleft()):
                 return
+
+    def _room(self) -> int:
+        """How many evaluations may be under way: one a worker, and where they are quick a spare one behind each.
+
+        A worker with a spare one has something to do while the result before is being stored: that takes a tenth of an
+        evaluation of level 1. Slow ones gain nothing from it, and a stop would wait for them. On a cluster nobody knows
+        when a spare one begins.
+        """
+        slots = self._workers.slots
+        return 2 * slots if self._typical < _QUICK and self._workers.blamable else slots
 
     def _start(self, job: _Job) -> bool:
         try:
@@ -176,11 +188,19 @@ class BatchEvaluator:
             self._requeue()
             self._workers.rebuild()
             return False
-        job.started = time.monotonic()
         if not self._under_way:
-            self._looked = job.started
+            self._looked = time.monotonic()
+        job.started = None
         self._under_way[future] = job
+        self._start_clocks()
         return True
+
+    def _start_clocks(self) -> None:
+        # Workers take them in the order submitted: as many as there are workers are being evaluated, the rest waits.
+        now = time.monotonic()
+        for job in itertools.islice(self._under_way.values(), self._workers.slots):
+            if job.started is None:
+                job.started = now
 
     def _submitted(self, job: _Job) -> Future[str]:
         candidate = job.candidate
@@ -217,8 +237,11 @@ class BatchEvaluator:
             return
         self._allow_for_stalls()
         now = time.monotonic()
-        late = [future for future, job in self._under_way.items() if now - job.started > self._limit]
-        late = [future for future in late if not future.done()]
+        late = [
+            future
+            for future, job in self._under_way.items()
+            if job.started is not None and now - job.started > self._limit and not future.done()
+        ]
         if late:
             for future in late:
                 job = self._under_way.pop(future)
@@ -238,7 +261,8 @@ class BatchEvaluator:
         self._looked = now
         if stalled > _STALL:
             for job in self._under_way.values():
-                job.started += stalled
+                if job.started is not None:
+                    job.started += stalled
 
     def _take_finished(self, finished: Callable[[int, Candidate, str], None]) -> bool:
         """Hand out results; True if a worker died."""
@@ -257,6 +281,9 @@ class BatchEvaluator:
                 broken = True
                 continue
             job = self._under_way.pop(future)
+            if job.started is not None:
+                took = time.monotonic() - job.started
+                self._typical = took if self._typical == math.inf else 0.8 * self._typical + 0.2 * took
             if error is None:
                 finished(job.number, job.candidate, future.result())
             elif type(error).__name__ == "KilledWorker":
@@ -266,6 +293,7 @@ class BatchEvaluator:
                 # SystemExit, or a result that cannot be pickled.
                 text = " ".join(f"{type(error).__name__}: {error}".split())
                 self._fail(job, "worker", text, finished)
+        self._start_clocks()
         return broken
 
     def _blame(self, finished: Callable[[int, Candidate, str], None]) -> None:
@@ -280,7 +308,7 @@ class BatchEvaluator:
 
     def _fail(self, job: _Job, stage: str, reason: str, finished: Callable[[int, Candidate, str], None]) -> None:
         candidate = job.candidate
-        elapsed = time.monotonic() - job.started
+        elapsed = 0.0 if job.started is None else time.monotonic() - job.started
         text = failure_text(self._case, candidate.variables, candidate.level, stage, reason, elapsed)
         finished(job.number, candidate, text)
 

@@ -1,0 +1,127 @@
+"""Runs on the page that are damaged, deleted, renamed, replaced or cut short: it starts, and says so within seconds."""
+
+from __future__ import annotations
+
+import logging
+import os
+import shutil
+from collections.abc import Iterator
+from pathlib import Path
+
+import pytest
+import quick_physics
+from quick_physics import physics
+from run_files import small_case, wait_until
+
+from explorer.app import Explorer, _chosen, main
+from explorer.server.security import free_port
+from explorer.services.library import NOT_READABLE, RunLibrary
+from explorer.services.run_keeper import RunKeeper
+from explorer.state.run_picture import FAILED, FINISHED
+from hpsop_core.errors import InputError
+from hpsop_core.runs.controller import RunController, optimize
+from hpsop_core.runs.store import RunStore
+
+SECONDS = 10.0
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> Path:
+    path = tmp_path_factory.mktemp("finished") / "run.hpsop"
+    optimize(small_case(), path, workers=1, physics=physics())
+    return path
+
+
+@pytest.fixture
+def keeper(tmp_path: Path, finished: Path) -> Iterator[RunKeeper]:
+    path = tmp_path / "run.hpsop"
+    shutil.copy(finished, path)
+    kept = RunKeeper(path, lambda: None)
+    assert kept.picture().status == FINISHED
+    yield kept
+    kept.close()
+
+
+def damage(path: Path) -> None:
+    """A bit in the middle of an evaluation."""
+    content = bytearray(path.read_bytes())
+    place = content.index(b'"offspring"') if b'"offspring"' in content else content.index(b"offspring")
+    content[place] ^= 4
+    path.write_bytes(bytes(content))
+
+
+def test_what_becomes_of_a_file_on_display_is_said_and_the_picture_stays(
+    keeper: RunKeeper, tmp_path: Path, finished: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    path, count = keeper.path, len(keeper.picture().ids)
+
+    def says(words: str) -> bool:
+        picture = keeper.picture()
+        return picture.status == FAILED and words in picture.message and len(picture.ids) == count
+
+    path.rename(tmp_path / "moved.hpsop")
+    wait_until(lambda: says("deleted or renamed"), SECONDS)
+    shutil.copy(finished, path)
+    wait_until(lambda: says("another file stands in its place"), SECONDS)
+    path.unlink()
+    (tmp_path / "moved.hpsop").rename(path)
+    wait_until(lambda: keeper.picture().status == FINISHED, SECONDS)
+    os.truncate(path, 20_000)
+    wait_until(lambda: says("cut short"), SECONDS)
+    assert not [record for record in caplog.records if record.levelno >= logging.WARNING]
+
+
+def test_a_run_whose_file_is_deleted_while_it_is_driven_pauses_with_the_reason(tmp_path: Path) -> None:
+    path = tmp_path / "run.hpsop"
+    with RunController(path, small_case(), workers=1, physics=physics(quick_physics.slow)) as controller:
+        controller.start()
+        wait_until(lambda: controller.snapshot().generation >= 1)
+        path.rename(tmp_path / "moved.hpsop")
+        wait_until(lambda: controller.snapshot().state == "paused", SECONDS)
+        assert "the file is gone" in controller.snapshot().reason
+        (tmp_path / "moved.hpsop").rename(path)
+        assert controller.wait(60.0)
+        assert controller.snapshot().state == "finished"
+
+
+def test_the_page_starts_though_the_newest_run_is_damaged(tmp_path: Path, finished: Path) -> None:
+    folder = tmp_path / "runs"
+    folder.mkdir()
+    path = folder / "newest.hpsop"
+    shutil.copy(finished, path)
+    damage(path)
+    opening = _chosen(None, folder)
+    assert opening.run == path, "its first look tells nothing"
+    port = free_port("127.0.0.1", 8390)
+    page = Explorer(opening.case, opening.run, port=port, folder=folder, workers=1, run_asked=False)
+    try:
+        assert "newest.hpsop: is damaged" in page.trouble
+        assert page.state.picture.name.endswith(".hpsop") and page.state.picture.name != "newest.hpsop"
+        entry = page.services.runs.library()[0]
+        assert entry.title == NOT_READABLE and "is damaged" in entry.summary
+        with pytest.raises(InputError, match="is damaged"):
+            page.services.runs.open_named("newest.hpsop")
+        assert page.state.picture.name != "newest.hpsop", "what was on display stays"
+    finally:
+        page.close()
+
+
+def test_a_damaged_run_that_was_asked_for_is_refused_in_one_line(
+    tmp_path: Path, finished: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setenv("HPSOP_RUNS", str(tmp_path / "runs"))
+    path = tmp_path / "asked.hpsop"
+    shutil.copy(finished, path)
+    damage(path)
+    assert main([str(path), "--no-browser", "--port", "8395"]) == 2
+    told = capsys.readouterr()
+    assert "asked.hpsop: is damaged" in told.err and told.err.count("\n") == 1
+
+
+def test_a_failed_run_may_be_continued_from_the_library(tmp_path: Path) -> None:
+    path = tmp_path / "run.hpsop"
+    with pytest.raises(InputError):
+        optimize(small_case(), path, workers=1, physics=physics(quick_physics.failing_everywhere))
+    RunStore(path).close()
+    entry = RunLibrary(tmp_path).entries()[0]
+    assert entry.summary.startswith("failed") and entry.continuable
