@@ -161,3 +161,42 @@ def test_cad_without_its_library_says_what_to_install(tmp_path: Path, monkeypatc
     (tmp_path / "ship.step").write_text("ISO-10303-21;")
     with pytest.raises(InputError, match=r"pip install 'hpsop\[cad\]'"):
         read_table(tmp_path / "ship.step", OPTIONS)
+
+
+@pytest.mark.parametrize("seed", range(40))
+def test_a_spoilt_table_is_read_or_refused(tmp_path: Path, seed: int) -> None:
+    """Lines lost, doubled and shuffled, cells of every kind: an answer or one line, nothing else."""
+    random = np.random.default_rng(seed)
+    lines = saved(tmp_path).read_text().splitlines()
+    for _ in range(random.integers(1, 4)):
+        k = int(random.integers(len(lines)))
+        cells = lines[k].split(",")
+        kind = int(random.integers(8))
+        if kind == 0:
+            del lines[k]
+        elif kind == 1:
+            lines.insert(k, lines[int(random.integers(len(lines)))])
+        elif kind == 2:
+            cells[int(random.integers(len(cells)))] = str(
+                random.choice(["", "nan", "-1", "1e9", "abc", "12-3-4", '"', "1,5", "½", "1e-12"])
+            )
+            lines[k] = ",".join(cells)
+        elif kind == 3:
+            lines = lines[: k + 1]
+        elif kind == 4:
+            lines[k] = lines[k].replace(",", str(random.choice([";", "\t", " ", ",,"])))
+        elif kind == 5:
+            lines = [lines[0], *lines[1 :: int(random.integers(2, 5))]]
+        elif kind == 6:
+            lines[0] = str(random.choice(["", "x,z,y", "z,x,y", "a,b,c", "1,2,3,4,5,6"]))
+        else:
+            lines = [lines[0], *random.permutation(lines[1:]).tolist()]
+    path = tmp_path / "spoilt.csv"
+    path.write_text("\n".join(lines), encoding="utf-8")
+    try:
+        volume = read_hull(path, OPTIONS).understood.displaced_volume
+    except InputError as refusal:
+        assert "\n" not in str(refusal) and str(refusal).startswith("spoilt.csv")
+    else:
+        # What is still read is this hull, within what a lost row of the keel or every second reading may cost.
+        assert volume == pytest.approx(8073, rel=0.05)
