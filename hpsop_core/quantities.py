@@ -86,6 +86,14 @@ def _hull(name: str, scale: float = 1.0) -> Callable[[Evaluation], float | None]
     return get
 
 
+def _profile(name: str, scale: float) -> Callable[[Evaluation], float | None]:
+    def get(evaluation: Evaluation) -> float | None:
+        value = getattr(evaluation, name)
+        return None if value is None else float(value) * scale
+
+    return get
+
+
 def _propeller(name: str) -> Callable[[Evaluation], float | None]:
     def get(evaluation: Evaluation) -> float | None:
         value = getattr(evaluation.propeller, name) if evaluation.ok else None
@@ -157,7 +165,28 @@ HULL: tuple[Quantity, ...] = (
     Quantity("wetted_surface", "wetted surface", "S", "m²", 0, _hull("wetted_surface"), "Hull"),
     Quantity("lcb", "LCB forward of AP", "LCB", "m", 2, _hull("longitudinal_centre_of_buoyancy"), "Hull"),
     Quantity("booked_cb", "booked block coefficient", "C_B booked", "", 4, _hull("booked_block_coefficient"), "Hull"),
+    Quantity("midship_coefficient", "midship coefficient", "C_M", "", 4, _hull("midship_coefficient"), "Hull"),
+    Quantity("prismatic_coefficient", "prismatic coefficient", "C_P", "", 4, _hull("prismatic_coefficient"), "Hull"),
+    Quantity(
+        "waterplane_coefficient", "waterplane coefficient", "C_WP", "", 4, _hull("waterplane_coefficient"), "Hull"
+    ),
 )
+
+SHIP: tuple[Quantity, ...] = (
+    Quantity("displacement_mass", "displacement", "Δ", "t", 0, _hull("displacement_mass", 1e-3), "Ship"),
+    Quantity("lightship_mass", "lightship", "Δ_light", "t", 0, _hull("lightship_mass", 1e-3), "Ship"),
+    Quantity("deadweight", "deadweight", "DWT", "t", 0, _hull("deadweight", 1e-3), "Ship", 1),
+    Quantity("kb", "centre of buoyancy above baseline", "KB", "m", 2, _hull("centre_of_buoyancy_height"), "Ship"),
+    Quantity("bm", "metacentric radius", "BM", "m", 2, _hull("metacentric_radius"), "Ship"),
+    Quantity("km", "metacentre above baseline", "KM", "m", 2, _hull("metacentre_height"), "Ship"),
+    Quantity("kg", "centre of gravity above baseline", "KG", "m", 2, _hull("centre_of_gravity_height"), "Ship"),
+    Quantity("gm", "metacentric height", "GM", "m", 2, _hull("metacentric_height"), "Ship"),
+    Quantity("fuel_per_hour", "fuel over the profile", "ṁ", "t/h", 3, _profile("fuel_per_hour", 1e-3), "Ship", -1),
+    Quantity("carbon_dioxide_per_hour", "CO2 over the profile", "ṁ_CO2", "t/h", 3,
+             _profile("carbon_dioxide_per_hour", 1e-3), "Ship", -1),
+    Quantity("attained_eedi", "attained EEDI", "EEDI", "g/(t nm)", 2,
+             _profile("attained_eedi_g_per_tonne_mile", 1.0), "Ship", -1),
+)  # fmt: skip
 
 PROPELLER: tuple[Quantity, ...] = (
     Quantity("propeller_diameter", "diameter", "D", "m", 2, _propeller("diameter"), "Propeller"),
@@ -206,7 +235,9 @@ _CONDITION = (
     ("propulsive_efficiency", "propulsive efficiency", "η_D", "", 4, 1.0, 1),
     ("delivered_power", "delivered power", "P_D", "MW", 2, 1e-6, -1),
     ("brake_power", "brake power, with sea margin", "P_B", "MW", 2, 1e-6, -1),
-    ("required_expanded_area_ratio", "required EAR (Keller)", "EAR_req", "", 3, 1.0, 0),
+    ("engine_load", "engine load", "P_B/MCR", "%", 1, 100.0, 0),
+    ("fuel_rate", "fuel", "ṁ_", "t/h", 3, 3.6, -1),
+    ("required_expanded_area_ratio", "required EAR", "EAR_req", "", 3, 1.0, 0),
     ("cavitation_number", "cavitation number", "σ_", "", 3, 1.0, 0),
     ("blade_cavitation_margin", "least Cp + σ on the blades (level 2)", "Cp+σ", "", 3, 1.0, 0),
     ("blade_cavitating_share", "back below vapour pressure (level 2)", "A_cav", "%", 1, 100.0, 0),
@@ -247,7 +278,7 @@ def condition_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
 
 def all_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
     """Everything there is, in the order of the tables; ``names`` of the conditions."""
-    return (*OBJECTIVES, *HULL, *PROPELLER, *condition_quantities(names), *CONSTRAINTS)
+    return (*OBJECTIVES, *HULL, *SHIP, *PROPELLER, *condition_quantities(names), *CONSTRAINTS)
 
 
 def objective_title(name: str, symbol: str) -> str:
@@ -263,3 +294,15 @@ def violated(evaluation: Evaluation) -> list[str]:
         for item in constraints.CONSTRAINTS
         if item.is_violated(values.get(item.name))
     ]
+
+
+def standing_on(evaluation: Evaluation) -> list[str]:
+    """Which bounds and limits a design stands on, in words."""
+    lines = [f"{VARIABLE_TABLE[name].symbol} on its {side} bound" for name, side in evaluation.active_bounds.items()]
+    values = evaluation.constraints
+    lines += [
+        f"{item.label} ({item.symbol}) at its limit"
+        for item in constraints.CONSTRAINTS
+        if item.is_active(values.get(item.name)) and not item.is_violated(values.get(item.name))
+    ]
+    return lines

@@ -13,9 +13,10 @@ from hpsop_core.charts.axis import Limits, padded
 from hpsop_core.charts.frame import Key
 from hpsop_core.charts.looks import Sheet
 from hpsop_core.charts.plot import Plot
-from hpsop_core.charts.search import COINCIDENT, Cloud, Front, Mark, draw_marks
+from hpsop_core.charts.search import COINCIDENT, Cloud, Front, Mark, draw_marks, family_front
 from hpsop_core.charts.search import pareto_chart as drawn_chart
 from hpsop_core.markup import Markup
+from hpsop_core.optimization.families import families, half_widths, narrow
 
 _FRONT_BONUS = 5.0
 _REACH = 18.0
@@ -113,6 +114,11 @@ def pareto_background(
         for inside, style in ((False, "opacity:.18"), (True, "opacity:.75")):
             clouds.append(Cloud(f[rows[keep[rows] == inside]], css, style=style))
     fronts = _drawn_fronts(picture, options, keep)
+    if fronts:
+        rows, names, _ = newest_families(picture, options.generation)
+        if len(rows) and max(names) < len(rows):
+            dots, fronts[-1] = family_front(fronts[-1], names)
+            clouds.append(dots)
     limits = options.limits or automatic_limits(picture, options)
     plot = drawn_chart(clouds, fronts, _fixed_marks(picture, options), limits, titles, Sheet(width, height))
     if options.filters and {"f1", "f2"} <= set(options.filters):
@@ -134,6 +140,25 @@ def _drawn_fronts(picture: RunPicture, options: ParetoOptions, keep: NDArray[np.
         line = "" if newest else "opacity:.45"
         drawn.append(Front(f[rows], f"level{item.level}", 4.2 if newest else 3.0, line, faded))
     return drawn
+
+
+def newest_families(
+    picture: RunPicture, generation: int | None = None
+) -> tuple[NDArray[np.int64], tuple[int, ...], str]:
+    """The newest front's rows ascending in f1, the family of each, and a sentence where it is narrower than its error.
+
+    See ``hpsop_core.optimization.families``.
+    """
+    shown = _fronts(picture, generation)
+    if not shown:
+        return np.zeros(0, dtype=np.int64), (), ""
+    f, item = picture.objectives, shown[-1]
+    rows = picture.rows(item.front)
+    rows = rows[np.argsort(f[rows, 0], kind="stable")]
+    if not len(rows):
+        return rows, (), ""
+    widths = half_widths([item.level] * len(rows), f[rows])
+    return rows, tuple(int(name) for name in families(f[rows], widths)), narrow(f[rows], widths)
 
 
 def _fixed_marks(picture: RunPicture, options: ParetoOptions) -> list[Mark]:

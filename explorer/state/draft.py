@@ -110,6 +110,18 @@ class Draft:
                 low, high = VARIABLE_TABLE[name].reach_near(value)
             self.set("bounds", name, (low, high))
 
+    def widen(self, name: str, side: str) -> None:
+        """Move a variable's "lower" or "upper" bound out by a quarter of its range, in whole steps, within its rule."""
+        variable = VARIABLE_TABLE[name]
+        lower, upper = self.value("bounds", name)
+        step = variable.step_near(getattr(self.initial(), name))
+        reach = max(1.0, math.ceil(round(0.25 * (upper - lower) / step, 6))) * step
+        if side == "lower":
+            lower = max(round(lower - reach, 10), variable.rule.lower)
+        else:
+            upper = min(round(upper + reach, 10), variable.rule.upper)
+        self.set("bounds", name, (variable.typed(lower), variable.typed(upper)))
+
     def case(self) -> Case:
         """The whole case.
 

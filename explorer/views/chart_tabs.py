@@ -9,12 +9,14 @@ from explorer.state.session import Session
 from explorer.views.charts_view import ChartTab
 from explorer.views.chips import soft
 from explorer.views.on_display import overlaid
+from hpsop_core.charts.engine import engine_chart
 from hpsop_core.charts.hulls import body_plan_chart, sectional_area_chart
 from hpsop_core.charts.looks import Look, Sheet
 from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thrust_chart
 from hpsop_core.charts.search import best_chart, convergence_chart
 from hpsop_core.evaluation.curves import DesignCurves, HullLines
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.ship import engine_of
 from hpsop_core.markup import Markup, fill, joined
 
 
@@ -72,6 +74,14 @@ def _resistance(session: Session, designs: Designs) -> Markup:
 def _thrust(session: Session, designs: Designs) -> Markup:
     curves = [(look, found.thrust, evaluation) for look, evaluation, found in _with_curves(session, designs)]
     return thrust_chart(curves, _sheet(session, 0.30)).svg("thrust")
+
+
+def _engine(session: Session, designs: Designs) -> Markup:
+    engine = engine_of(session.picture.case.engine)
+    shown = [(look, item.evaluation) for look, item in overlaid(session, designs)]
+    words = "The case states no engine: set its MCR under Loading and engine." if engine is None else ""
+    chart = engine_chart(engine, shown, _sheet(session, 0.30)).svg("engine")
+    return fill("{}{}", chart, soft(words) if words else "")
 
 
 def _with_lines(session: Session, designs: Designs) -> list[tuple[Look, HullLines]]:
@@ -143,6 +153,7 @@ _TABS = (
     ChartTab("open_water", "Open water", "design", _DESIGN, _open_water),
     ChartTab("resistance", "Resistance", "design", _DESIGN | {"curves"}, _resistance),
     ChartTab("thrust", "Thrust", "design", _DESIGN | {"curves"}, _thrust),
+    ChartTab("engine", "Engine", "design", _DESIGN, _engine),
     ChartTab("lines", "Lines", "design", _DESIGN, _lines),
     ChartTab("parallel", "Parallel coordinates", "run", frozenset({"run", "filter", "selection", "scrub"}), _parallel),
     ChartTab("drivers", "Drivers", "run", frozenset({"run"}), _drivers),

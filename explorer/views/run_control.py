@@ -7,6 +7,7 @@ from collections.abc import Callable
 from explorer.server.bridge import PageEvent
 from explorer.services.runs import Runs
 from explorer.state.session import Session
+from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.errors import HpsopError, InputError
 
 
@@ -31,6 +32,7 @@ class RunControl:
             ("delete_yes", lambda event: self._delete(event.arg), "deleted a run"),
             ("adopt", lambda event: self._adopt(), "took the shown run's settings over"),
             ("reset_field", lambda event: self._reset(event.arg), ""),
+            ("widen", lambda event: self._widen(event.arg), ""),
         )
         for name, action, told in actions:
             session.gestures.on("act", name, self._guarded(action, told))
@@ -55,6 +57,13 @@ class RunControl:
         section, _, name = argument.partition(".")
         if self._app.draft.changed(section, name):
             self._app.change_draft(lambda draft: draft.reset(section, name), whole=True)
+
+    def _widen(self, argument: str) -> None:
+        """Move a bound out by a quarter of its range: "length_to_breadth.upper"."""
+        name, _, side = argument.partition(".")
+        if name not in VARIABLE_TABLE or side not in ("lower", "upper"):
+            raise InputError(f"widen: {argument[:40]!r} is no bound")
+        self._app.change_draft(lambda draft: draft.widen(name, side), whole=True)
 
     def _delete(self, name: str) -> None:
         if self._app.asked_to_delete != name:

@@ -26,9 +26,9 @@ from explorer.views.settings_fields import (
 )
 from hpsop_core.case.case import SHIPPED_CASES, load_case
 from hpsop_core.case.fields import checked_value, rules
-from hpsop_core.case.variables import VARIABLE_TABLE
+from hpsop_core.case.variables import ON_BOUND, VARIABLE_TABLE
 from hpsop_core.errors import InputError
-from hpsop_core.markup import fill, joined
+from hpsop_core.markup import Markup, fill, joined
 from hpsop_core.quantities import number_text, variable_quantities
 
 # A field is typed digit by digit; what cannot be taken is refused when the typing has rested so long.
@@ -90,7 +90,7 @@ class SettingsView:
         self._around.on_click(self._on_around)
         self._reset.on_click(self._on_reset)
         self._save.on_click(save)
-        app.hub.on(("draft",), self.draw)
+        app.hub.on(("draft", "run"), self.draw)
         app.hub.on(("settings",), self.show_all)
         self.draw()
 
@@ -329,12 +329,33 @@ class SettingsView:
             text = f"fixed at {a}{unit}" if low == high else f"{a} … {b}{unit}"
             self._readouts[quantity.key].show(
                 fill(
-                    '<div class="hp readout" data-variable="{}"><span>{}</span><span class="level">{}</span></div>',
+                    '<div class="hp readout" data-variable="{}"><span>{}</span><span class="level">{}</span>{}</div>',
                     quantity.key,
                     text,
                     mark,
+                    self._pressed(quantity.key),
                 )
             )
+
+    def _pressed(self, key: str) -> Markup:
+        """How much of the newest front stands on a variable's bounds, with a button that moves the bound out."""
+        picture = self._app.picture
+        newest = picture.generations[-1] if picture.generations else None
+        values = picture.column(key) if newest is not None else None
+        bounds = picture.case.bounds.as_dict()[key]
+        if newest is None or values is None or self._app.draft.value("bounds", key) != bounds:
+            return NOTHING
+        front, (low, high) = values[picture.rows(newest.front)], VARIABLE_TABLE[key].shown_pair(bounds)
+        near = ON_BOUND * (high - low)
+        words = []
+        for side, count in (("lower", int((front <= low + near).sum())), ("upper", int((front >= high - near).sum()))):
+            if low < high and count:
+                said = fill('<span class="standing">{} of {} on the {} bound</span>', count, len(front), side)
+                widen = chip(
+                    "widen", "widen", f"{key}.{side}", hint=f"move the {side} bound out by a quarter of the range"
+                )
+                words.append(said + widen)
+        return chips(*words) if words else NOTHING
 
 
 def _list_text(values: tuple[float, ...]) -> str:

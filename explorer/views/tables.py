@@ -12,11 +12,13 @@ from hpsop_core.quantities import (
     HULL,
     OBJECTIVES,
     PROPELLER,
+    SHIP,
     Quantity,
     all_quantities,
     change_text,
     condition_quantities,
     conditions_of,
+    standing_on,
     violated,
 )
 
@@ -41,8 +43,13 @@ def headline(shown: Shown) -> Markup:
 
 
 def warnings_html(shown: Shown) -> Markup:
-    """Violated constraints and warnings in words."""
+    """Violated constraints, what the design stands on, and warnings in words."""
     lines = [fill('<p class="bad">{}</p>', text) for text in violated(shown.evaluation)]
+    standing = standing_on(shown.evaluation)
+    if standing:
+        lines.append(
+            fill('<p class="standing" data-standing="{}">Stands on: {}.</p>', len(standing), "; ".join(standing))
+        )
     lines += [fill('<p class="soft">{}</p>', text) for text in shown.evaluation.warnings]
     return joined(lines)
 
@@ -138,7 +145,9 @@ def design_card(shown: Shown) -> Markup:
     """Every number of a design, for the tooltip."""
     evaluation = shown.evaluation
     names = conditions_of(evaluation)
-    columns = [_table([_card_row(quantity, shown) for quantity in (*OBJECTIVES, *HULL, *PROPELLER, *CONSTRAINTS)])]
+    columns = [
+        _table([_card_row(quantity, shown) for quantity in (*OBJECTIVES, *HULL, *SHIP, *PROPELLER, *CONSTRAINTS)])
+    ]
     quantities = condition_quantities(names)
     each = len(quantities) // max(len(names), 1)
     groups = [quantities[index * each : (index + 1) * each] for index in range(len(names))]

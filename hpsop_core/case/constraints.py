@@ -87,11 +87,12 @@ def _cavitation(design: DesignNumbers, initial: InitialNumbers, case: Case) -> f
 
 def _cavitation_asked(case: Case) -> str:
     limits = case.constraints
-    late = "" if limits.g3_level == 1 else ", at level 2 only: the search at level 1 does not see cavitation"
+    both = limits.g3_level == 1
+    where = "at both levels" if both else "at level 2 only: the search at level 1 does not see cavitation"
     whose = "Burrill's for 5 % back cavitation"
     if limits.cavitation_criterion == "keller":
         whose = f"Keller's with K = {limits.keller_k:.2f}"
-    return f"expanded area ratio at least {whose} {_where_judged(case)}{late}"
+    return f"expanded area ratio at least {whose} {_where_judged(case)}, {where}"
 
 
 def _back_cavitation(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float | None:

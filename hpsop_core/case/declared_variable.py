@@ -62,6 +62,10 @@ class Variable:
         """The number in ``unit``."""
         return self.scale * value
 
+    def shown_pair(self, pair: tuple[float, float]) -> tuple[float, float]:
+        """Two bounds in ``unit``."""
+        return self.shown(pair[0]), self.shown(pair[1])
+
     def step_near(self, value: float) -> float:
         """The step of a slider around an initial design's value."""
         return float(10.0 ** math.floor(math.log10(value * _LENGTH_STEP))) if self.step is None else self.step

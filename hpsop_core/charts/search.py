@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 from numpy.typing import NDArray
@@ -50,6 +50,7 @@ class Front:
         line_style: CSS of the line.
         mark_styles: CSS of each mark; none means no own style.
         key: words of the legend, and name in the CSV.
+        counts: how many designs each mark stands for; none means one each.
     """
 
     points: Array
@@ -58,6 +59,7 @@ class Front:
     line_style: str = ""
     mark_styles: Sequence[str] = ()
     key: str = ""
+    counts: Sequence[int] = ()
 
 
 @dataclass(frozen=True)
@@ -78,6 +80,27 @@ class Mark:
     css: str
     title: str = ""
     key: str = ""
+
+
+def family_front(front: Front, names: Sequence[int]) -> tuple[Cloud, Front]:
+    """A front whose families are one mark each: the members as small dots, and the marks with their counts.
+
+    Args:
+        front: every design a mark.
+        names: of each design's family.
+
+    Returns:
+        The dots, and the marks: of each family the member in the middle.
+    """
+    rows = [np.flatnonzero(np.asarray(names) == name) for name in dict.fromkeys(names)]
+    middle = [int(row[len(row) // 2]) for row in rows]
+    marked = replace(
+        front,
+        points=front.points[middle],
+        mark_styles=[front.mark_styles[row] for row in middle] if front.mark_styles else (),
+        counts=[len(row) for row in rows],
+    )
+    return Cloud(front.points, front.css, 1.7, "opacity:.55"), marked
 
 
 def window(core: Array, cloud: Array) -> tuple[Limits, Limits]:
@@ -102,7 +125,7 @@ def pareto_chart(
     """Everything evaluated, and what stands out.
 
     Args:
-        clouds, fronts, marks: drawn in this order; the last front counts designs that coincide.
+        clouds, fronts, marks: drawn in this order; the last front counts designs that coincide, or its own counts.
         limits: of both objectives.
         titles: of the axes.
         sheet: size and style.
@@ -119,7 +142,11 @@ def pareto_chart(
             style = front.mark_styles[row] if front.mark_styles else ""
             key = front.key if row == 0 else ""
             plot.mark(f[row, 0], f[row, 1], "circle", front.radius, front.css, style, key=key)
-    if fronts:
+    if fronts and fronts[-1].counts:
+        for point, count in zip(fronts[-1].points, fronts[-1].counts, strict=True):
+            if count > 1:
+                plot.text(float(point[0]), float(point[1]), f"×{count}", "count", dx=6, dy=-5)
+    elif fronts:
         count_coincident(plot, fronts[-1].points)
     draw_marks(plot, marks)
     return plot

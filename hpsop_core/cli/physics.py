@@ -26,6 +26,7 @@ from hpsop_core.errors import InputError
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.geometry.hull.input.options import ReadOptions
 from hpsop_core.model_test import MODEL_DIAMETER, MODEL_ROTATION_RATE, MODEL_VISCOSITY
+from hpsop_core.quantities import SHIP, standing_on
 
 if TYPE_CHECKING:
     from hpsop_core.case.case import Case
@@ -116,7 +117,14 @@ def print_evaluation(result: Evaluation) -> None:
     )
     if hull.booked_volume is not None:
         print(f"booked (affine form): CB {hull.booked_block_coefficient:.4f}, volume {hull.booked_volume:,.0f} m3")
+    ship = [(item, item.value(result)) for item in SHIP]
+    print("ship: " + ", ".join(f"{item.symbol.replace('_', ' ')} {item.text(result)} {item.unit}"
+                               for item, value in ship if value is not None))  # fmt: skip
     _print_conditions(result.conditions)
+    for c in result.conditions:
+        if c.engine_load is not None:
+            fuel = "" if c.fuel_rate is None else f", fuel {3.6 * c.fuel_rate:.3f} t/h"
+            print(f"engine at {c.speed / KNOT:.2f} kn: {100.0 * c.engine_load:.1f} % of its rating{fuel}")
     for c in result.conditions:
         if c.blade_cavitation_margin is not None:
             print(
@@ -130,6 +138,9 @@ def print_evaluation(result: Evaluation) -> None:
         for name, value in result.constraints.items()
     )
     print(f"constraints (g <= 0): {limits}; {'feasible' if result.feasible else 'NOT feasible'}")
+    standing = standing_on(result)
+    if standing:
+        print(f"stands on: {'; '.join(standing)}")
     for warning in result.warnings:
         print(f"warning: {warning}")
 

@@ -9,13 +9,13 @@ import sys
 from collections.abc import Sequence
 from typing import Any
 
-from hpsop_core.case.case import load_case
+from hpsop_core.case.case import Case, load_case
 from hpsop_core.cli.arguments import add_json, print_json, print_table
 from hpsop_core.cli.driving import INTERRUPTED, Progress, driven, duration
 from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController, front_designs
 from hpsop_core.runs.reader import RunReader, open_run
-from hpsop_core.runs.records import DesignRecord, identifier
+from hpsop_core.runs.records import DesignRecord, front_families, identifier
 
 
 def add_parsers(commands: Any) -> None:
@@ -118,14 +118,19 @@ def _show_design(run: RunReader, arguments: argparse.Namespace) -> None:
 def _show_designs(run: RunReader, arguments: argparse.Namespace, designs: Sequence[DesignRecord]) -> None:
     generation = run.generation(arguments.generation)
     initial = run.initial(1 if generation is None else generation.level)
+    bounds = run.case.bounds
+    families, narrow = front_families(designs)
     if arguments.json:
         document: dict[str, Any] = {
             "generation": 0 if generation is None else generation.number,
             "level": initial.evaluation.level if generation is None else generation.level,
-            "designs": [record.summary() for record in designs],
+            "designs": [
+                {**record.summary(), "active_bounds": bounds.active(record.evaluation.variables), "family": family}
+                for record, family in zip(designs, families, strict=True)
+            ],
             "compromise": None if generation is None else generation.compromise,
             "knee": None if generation is None else generation.knee,
-            "initial": initial.summary(),
+            "initial": {**initial.summary(), "active_bounds": bounds.active(initial.evaluation.variables)},
         }
         if generation is not None:
             document |= {"hypervolume": generation.hypervolume, "feasible_share": generation.feasible_share}
@@ -140,14 +145,24 @@ def _show_designs(run: RunReader, arguments: argparse.Namespace, designs: Sequen
     print(f"generation {generation.number}, level {generation.level}: {what}, hypervolume {generation.hypervolume:.5f}")
     space = run.case.bounds.as_dict()
     free = [name for name, (lower, upper) in space.items() if lower < upper]
-    header = ["id", "", run.case.objectives.first, run.case.objectives.second, *free, "feasible"]
+    header = ["id", "", run.case.objectives.first, run.case.objectives.second, *free, "feasible", "family"]
     marks = {generation.knee: "knee", generation.compromise: "compromise"}
-    rows = [_row(record, marks.get(record.id, ""), free) for record in designs]
-    print_table(header, [*rows, _row(initial, "initial", free)])
+    rows = [
+        [*_row(run.case, record, marks.get(record.id, ""), free), str(family)]
+        for record, family in zip(designs, families, strict=True)
+    ]
+    print_table(header, [*rows, [*_row(run.case, initial, "initial", free), ""]])
+    print("v, ^: on its lower, upper bound; designs of one family cannot be told apart by the error of their numbers")
+    if arguments.front and narrow:
+        print(narrow)
 
 
-def _row(record: DesignRecord, mark: str, free: Sequence[str]) -> list[str]:
+_SIDES = {"": "", "lower": "v", "upper": "^"}
+
+
+def _row(case: Case, record: DesignRecord, mark: str, free: Sequence[str]) -> list[str]:
     evaluation = record.evaluation
+    active = case.bounds.active(evaluation.variables)
     values = evaluation.variables.as_dict()
     objectives = [evaluation.objectives["f1"], evaluation.objectives["f2"]]
     numbers = ["failed" if value is None else f"{value:.5f}" for value in objectives]
@@ -155,7 +170,7 @@ def _row(record: DesignRecord, mark: str, free: Sequence[str]) -> list[str]:
         str(record.id),
         mark,
         *numbers,
-        *(f"{values[name]:.6g}" for name in free),
+        *(f"{values[name]:.6g}{_SIDES[active.get(name, '')]}" for name in free),
         "yes" if evaluation.feasible else "no",
     ]
 

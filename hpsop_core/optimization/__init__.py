@@ -4,4 +4,5 @@
 * sampling: the initial sample and the seeds; nsga2: the search at one level
 * two_level: the search over two levels of fidelity; generation: what a generation came to
 * indicators: how good a front is; decision: choosing one design of it
+* families: which designs of a front are one answer, because their errors are greater than their differences
 """

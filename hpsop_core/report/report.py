@@ -9,16 +9,18 @@ from pathlib import Path
 
 import numpy as np
 
+from hpsop_core.charts.engine import engine_chart
 from hpsop_core.charts.hulls import body_plan_chart, sectional_area_chart
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thrust_chart
-from hpsop_core.charts.search import Cloud, Front, Mark, convergence_chart, pareto_chart, window
+from hpsop_core.charts.search import Cloud, Front, Mark, convergence_chart, family_front, pareto_chart, window
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.curves import hull_lines, thrust_curves
 from hpsop_core.evaluation.levels import level_of
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.ship import engine_of
 from hpsop_core.markup import Markup, fill, joined, one_line
-from hpsop_core.quantities import change_text, number_text, objective_title, violated
+from hpsop_core.quantities import change_text, number_text, objective_title, standing_on, violated
 from hpsop_core.report.data import ReportData
 from hpsop_core.report.html_page import (
     Section,
@@ -40,7 +42,7 @@ from hpsop_core.report.tables import (
 )
 from hpsop_core.report.words import assumptions, trust
 from hpsop_core.runs.reader import RunReader
-from hpsop_core.runs.records import DesignRecord
+from hpsop_core.runs.records import DesignRecord, front_families
 from hpsop_core.typing_aliases import Array
 from hpsop_core.version import __version__
 
@@ -192,6 +194,9 @@ def _in_short(data: ReportData, initial: Evaluation, record: DesignRecord) -> Ma
         if hull.displaced_volume < booked:
             line += " A smaller ship is part of the gain."
         lines.append(line)
+    standing = standing_on(chosen)
+    if standing:
+        lines.append(f"It stands on: {'; '.join(standing)}. Where a bound decides, ask whether it is meant.")
     first = (
         f"The compromise between both objectives is design {record.id}, one of {len(data.front)} on the front; numbers "
         f"of level {chosen.level}."
@@ -210,7 +215,7 @@ def _search(data: ReportData) -> Markup:
             "pareto",
             f"All {total} designs that could be computed; both objectives are minimised. Each level is normalised by "
             "the initial design at that level, so points of different levels compare only roughly. Designs far off are "
-            "left out of the picture.",
+            "left out of the picture. ×n: a family of n designs that the error of their numbers cannot tell apart.",
         ),
         chart_html(
             convergence_chart(
@@ -232,6 +237,10 @@ def _pareto(data: ReportData, clouds: Sequence[Cloud]) -> Plot:
     """The Pareto chart of a run as it is now."""
     front = _objectives(data.front)
     fronts = [Front(front, "front", 2.6, key="front")] if len(front) else []
+    if len(front):
+        belongs, _ = front_families(data.front)
+        dots, fronts[0] = family_front(fronts[0], belongs)
+        clouds = [*clouds, dots]
     marks = []
     for record, shape, size, name in (
         (data.initial, "square", 4.5, "initial"),
@@ -309,9 +318,19 @@ def _propulsion(data: ReportData) -> Markup:
             f"{words} over Froude number on each design's own length; dots: the operating conditions.",
         )
 
-    return pair(_or_why(open_water), _or_why(thrust)) + pair(
+    engine = engine_of(data.case.engine)
+
+    def diagram() -> Markup:
+        return chart_html(
+            engine_chart(engine, with_curves, SHEET),
+            "engine",
+            "Brake power over the rate of revolutions; dashed: the engine's layout. Crosses lie outside.",
+        )
+
+    charts = pair(_or_why(open_water), _or_why(thrust)) + pair(
         _or_why(lambda: resistance("total", "Total resistance")), _or_why(lambda: resistance("wave", "Wave resistance"))
     )
+    return charts if engine is None else charts + _or_why(diagram)
 
 
 def _form(data: ReportData) -> Markup:
@@ -360,4 +379,6 @@ def _front(data: ReportData) -> Markup:
         len(data.front),
         one_line(shlex.quote(str(data.run.path))),
     )
-    return paragraph(words) + front_table(data.case, data.front, data.marks())
+    _, narrow = front_families(data.front)
+    said = paragraph(narrow, "banner") if narrow else Markup("")
+    return paragraph(words) + said + front_table(data.case, data.front, data.marks())

@@ -21,6 +21,7 @@ from hpsop_core.quantities import (
     HULL,
     OBJECTIVES,
     PROPELLER,
+    SHIP,
     Quantity,
     change_text,
     condition_names,
@@ -30,7 +31,7 @@ from hpsop_core.quantities import (
     variable_quantities,
 )
 from hpsop_core.report.html_page import Words, facts, paragraph, table, unit_html
-from hpsop_core.runs.records import DesignRecord, Failure
+from hpsop_core.runs.records import DesignRecord, Failure, front_families
 from hpsop_core.typing_aliases import Array
 
 FAILURES_SHOWN = 40
@@ -38,9 +39,9 @@ FAILURES_SHOWN = 40
 _IN_RESULT = (
     "froude_number", "speed", "total_resistance", "friction_resistance", "form_resistance", "wave_resistance",
     "correlation_resistance", "air_resistance", "appendage_resistance", "effective_power", "delivered_power",
-    "brake_power", "open_water_efficiency", "hull_efficiency", "propulsive_efficiency", "wake_fraction",
-    "thrust_deduction", "advance_coefficient", "rotation_rate_rpm", "thrust", "torque", "required_expanded_area_ratio",
-    "blade_cavitation_margin",
+    "brake_power", "engine_load", "fuel_rate", "open_water_efficiency", "hull_efficiency", "propulsive_efficiency",
+    "wake_fraction", "thrust_deduction", "advance_coefficient", "rotation_rate_rpm", "thrust", "torque",
+    "required_expanded_area_ratio", "blade_cavitation_margin",
 )  # fmt: skip
 _ONLY_DIFFERENCES = ("blade_cavitation_margin", "f1", "f2")
 
@@ -51,7 +52,7 @@ def result_quantities(case: Case) -> tuple[Quantity, ...]:
     kept = tuple(q for q in conditions if q.key.rsplit("_", 1)[0] in _IN_RESULT)
     variables = variable_quantities(case.initial.variables)
     pitch = tuple(dataclasses.replace(q, group="Propeller") for q in variables if q.key == "pitch_ratio")
-    return (*OBJECTIVES, *kept, *HULL, *PROPELLER, *pitch, *CONSTRAINTS)
+    return (*OBJECTIVES, *kept, *HULL, *SHIP, *PROPELLER, *pitch, *CONSTRAINTS)
 
 
 def _named(quantity: Quantity, case: Case) -> Markup:
@@ -109,13 +110,29 @@ def front_table(case: Case, front: Sequence[DesignRecord], marks: Mapping[int, s
     ]
     length = [quantity for quantity in HULL if quantity.key == "length"]
     columns = [*OBJECTIVES, *free, *length, *per_condition]
+    belongs, _ = front_families(front)
     header: list[Words] = ["design", ""]
     header += [fill("{}<br>{}", symbol_html(q.symbol), unit_html(q.unit)) for q in columns]
+    header.append("family")
     rows = [
-        [str(record.id), marks.get(record.id, ""), *(q.text(record.evaluation) for q in columns)] for record in front
+        [
+            str(record.id),
+            marks.get(record.id, ""),
+            *(joined((q.text(record.evaluation), _side(record, q.key))) for q in columns),
+            str(family),
+        ]
+        for record, family in zip(front, belongs, strict=True)
     ]
     marked = [index for index, record in enumerate(front) if record.id in marks]
-    return table(header, rows, words=(1,), marked=marked, wide=True)
+    caption = (
+        "↓, ↑: on its lower, upper bound. Designs of one family cannot be told apart by the error of their numbers."
+    )
+    return table(header, rows, words=(1,), marked=marked, wide=True, caption=caption)
+
+
+def _side(record: DesignRecord, key: str) -> Words:
+    side = record.evaluation.active_bounds.get(key)
+    return "" if side is None else Markup("&nbsp;↓" if side == "lower" else "&nbsp;↑")
 
 
 def correlation_table(case: Case, evaluations: Sequence[Evaluation]) -> Markup:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import json
 import os
 import time
@@ -14,7 +15,7 @@ from hpsop_core.case.case import Case, case_from_toml
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.levels import FAST
-from hpsop_core.evaluation.result import evaluation_from_dict
+from hpsop_core.evaluation.result import Evaluation, evaluation_from_dict
 from hpsop_core.optimization.decision import compromise
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.runs.checksums import DamagedRunError, damage_told
@@ -290,9 +291,16 @@ class RunReader:
                     if row is None:
                         raise InputError(f"{self.path}: has no design {number}; see 'hpsop show {self.path} --front'")
                     record = _record("evaluations", row)
-                    evaluation = evaluation_from_dict(content.document(row))
+                    evaluation = self._placed(content.document(row))
                     self._designs[number] = DesignRecord(number, record["origin"], record["generation"], evaluation)
         return tuple(self._designs[number] for number in ids)
+
+    def _placed(self, document: Mapping[str, Any]) -> Evaluation:
+        """An evaluation with the bounds that it stands on, which files of earlier versions do not tell."""
+        evaluation = evaluation_from_dict(document)
+        if not evaluation.ok:
+            return evaluation
+        return dataclasses.replace(evaluation, active_bounds=self.case.bounds.active(evaluation.variables))
 
     def design(self, name: int | str, generation: int | None = None) -> DesignRecord:
         """A design by id, or "initial", "compromise" or "knee" of a generation (the last one by default).

@@ -5,16 +5,19 @@ from __future__ import annotations
 import dataclasses
 import hashlib
 import json
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 from typing import Any
+
+import numpy as np
 
 from hpsop_core.case.fields import rules
 from hpsop_core.case.sections import OptimizationSection
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.optimization.families import families, half_widths, narrow
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.runs.checksums import DamagedRunError
 
@@ -42,6 +45,7 @@ class DesignRecord:
             "objectives": dict(self.evaluation.objectives),
             "variables": self.evaluation.variables.as_dict(),
             "feasible": self.evaluation.feasible,
+            "errors": dict(self.evaluation.errors),
         }
 
     def as_dict(self) -> dict[str, Any]:
@@ -94,6 +98,21 @@ class GenerationRecord:
     generation: Generation
     elapsed: float
     finished_at: float
+
+
+def front_families(records: Sequence[DesignRecord]) -> tuple[tuple[int, ...], str]:
+    """The family of each design, 0 for one without objectives; and a sentence where they span less than their error.
+
+    See ``optimization.families``.
+    """
+    known = [record for record in records if record.evaluation.ok]
+    if not known:
+        return (0,) * len(records), ""
+    points = np.array([[record.evaluation.objectives["f1"], record.evaluation.objectives["f2"]] for record in known])
+    levels = [record.evaluation.level for record in known]
+    widths = half_widths(levels, points, [record.evaluation.errors for record in known])
+    named = {record.id: int(family) for record, family in zip(known, families(points, widths), strict=True)}
+    return tuple(named.get(record.id, 0) for record in records), narrow(points, widths)
 
 
 def json_text(value: Any) -> str:

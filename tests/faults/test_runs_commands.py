@@ -15,6 +15,7 @@ from pathlib import Path
 import pytest
 from run_files import content
 
+from hpsop_core.case.case import load_case
 from hpsop_core.cli.main import main
 
 RUN = "run.hpsop"
@@ -66,13 +67,26 @@ def test_show_front_has_the_shape_of_the_contract(folder: Path) -> None:
     assert document["generation"] == 4 and document["level"] == 1
     assert {"generation", "level", "designs", "compromise", "initial"} <= document.keys()
     for design in [*document["designs"], document["initial"]]:
-        assert list(design) == ["id", "objectives", "variables", "feasible"]
+        assert list(design)[:4] == ["id", "objectives", "variables", "feasible"]
+        assert {"active_bounds", "errors"} <= set(design) and set(design["active_bounds"].values()) <= {
+            "lower",
+            "upper",
+        }
         assert type(design["id"]) is int and list(design["variables"]) == VARIABLES
         assert set(design["objectives"]) == {"f1", "f2"}
     assert document["compromise"] in [design["id"] for design in document["designs"]]
     assert all(design["feasible"] for design in document["designs"])
     # 1 but for the rounding of a sum of two weighted ratios that are 1.
     assert document["initial"]["objectives"]["f1"] == pytest.approx(1.0, abs=1e-12)
+    bounds = load_case("dtc-p4119-paper").bounds.as_dict()
+    for design in document["designs"]:
+        for name, side in design["active_bounds"].items():
+            low, high = bounds[name]
+            assert side in ("lower", "upper")
+            place = (design["variables"][name] - low) / (high - low)
+            assert place <= 0.01 if side == "lower" else place >= 0.99
+    names = [design["family"] for design in document["designs"]]
+    assert names[0] == 1 and names == sorted(names) and set(names) == set(range(1, max(names) + 1))
     points = [tuple(design["objectives"].values()) for design in document["designs"]]
     assert points == sorted(points) and all(a[1] > b[1] for a, b in pairwise(points))
 

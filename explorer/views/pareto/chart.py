@@ -6,14 +6,21 @@ from collections.abc import Mapping
 
 import viser
 
-from explorer.charts.pareto import ParetoOptions, automatic_limits, pareto_background, pareto_chart
+from explorer.charts.pareto import (
+    ParetoOptions,
+    automatic_limits,
+    newest_families,
+    pareto_background,
+    pareto_chart,
+)
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Limits, Session
-from explorer.views.chips import box
+from explorer.views.chips import NOTHING, box, soft
 from hpsop_core.charts.frame import Key
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.search import Mark
+from hpsop_core.markup import fill
 from hpsop_core.quantities import objective_title
 
 
@@ -73,7 +80,13 @@ class ParetoChart:
             keys.append(Key("square", "hand", "by hand"))
         if session.pins:
             keys.append(Key("triangle", "pin1", "pinned"))
-        self._html.show(box(pareto_chart(picture, self._background[1], self._marks(), keys)))
+        rows, names, sentence = newest_families(picture, options.generation)
+        words = fill('<p class="standing" data-narrow="1">{}</p>', sentence) if sentence else NOTHING
+        if len(rows) and max(names) < len(rows):
+            words += soft(
+                f"×n: n designs that the error of their numbers cannot tell apart; {max(names)} such families."
+            )
+        self._html.show(box(pareto_chart(picture, self._background[1], self._marks(), keys), words))
 
     def _height(self) -> float:
         return min(max(0.5 * self._session.size[1] - 178.0, 190.0), 400.0)
