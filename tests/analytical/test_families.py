@@ -71,6 +71,7 @@ def picture(points: np.ndarray) -> RunPicture:
         feasible=np.ones(count, dtype=bool),
         failed=np.zeros(count, dtype=bool),
         by_hand=np.zeros(count, dtype=bool),
+        table=np.zeros((count, 0)),
         generations=(GenerationPicture(1, 2, tuple(ids), tuple(ids), 0.1),),
     )
 
