@@ -8,6 +8,7 @@ from hpsop_core.case.case import KNOT, Case
 from hpsop_core.case.constraints import CONSTRAINTS
 from hpsop_core.case.objectives import objective_named
 from hpsop_core.case.sections import ConstantsSection
+from hpsop_core.case.ship import kilograms_per_joule
 from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.evaluation.levels import FAST, TRUTH, level_of
 from hpsop_core.markup import Markup, fill, joined, one_line, symbol_html
@@ -158,9 +159,32 @@ def _constants(case: Case) -> Markup:
             ("sea margin", f"{number_text(100.0 * c.sea_margin, 1)} % on the brake power"),
             ("shaft efficiency", number_text(c.shaft_efficiency, 3)),
             ("blade roughness", f"{number_text(1e6 * c.propeller_roughness, 0)} µm"),
+            *_ship(case),
             ("not included", ", ".join([*left_out, "added resistance in waves and wind", "shallow water"])),
         ]
     )
+
+
+def _ship(case: Case) -> list[tuple[str, Words]]:
+    """What the case states of loading and engine."""
+    loading, engine = case.loading, case.engine
+    found: list[tuple[str, Words]] = []
+    if loading.centre_of_gravity_height is not None:
+        height = number_text(loading.centre_of_gravity_height, 2)
+        found.append(("centre of gravity", f"{height} m above the baseline, in proportion to depth"))
+    if loading.lightship_mass is not None:
+        mass = number_text(1e-3 * loading.lightship_mass, 0)
+        found.append(("lightship", f"{mass} t, in proportion to L B depth"))
+    if engine.maximum_continuous_rating is not None:
+        rate = engine.rated_rotation_rate_rpm
+        at = "" if rate is None else f" at {number_text(rate, 1)} rpm"
+        found.append(("engine", f"{number_text(1e-6 * engine.maximum_continuous_rating, 2)} MW{at}"))
+    if engine.load_fractions:
+        grams = [3.6e9 * kilograms_per_joule(value) for value in engine.specific_fuel_consumptions]
+        pairs = zip(engine.load_fractions, grams, strict=True)
+        words = ", ".join(f"{number_text(value, 0)} at {number_text(100.0 * load, 0)} %" for load, value in pairs)
+        found.append(("specific fuel consumption", f"{words} load [g/kWh]"))
+    return found
 
 
 _CHANGE = "for the initial design, the others by the change of Holtrop and Mennen's"
@@ -235,8 +259,8 @@ def trust(case: Case, level: int | None) -> Markup:
             "Differences between similar designs are worth more than the absolute numbers."
         ),
         Markup(
-            "<strong>Not looked at</strong>: strength of hull and blades, stability, cargo space, seakeeping, "
-            "manoeuvring, vibration, cost. The form is fitted, not faired by hand."
+            "<strong>Not looked at</strong>: strength of hull and blades, damage stability, cargo space, "
+            "seakeeping, manoeuvring, vibration, cost. The form is fitted, not faired by hand."
         ),
         Markup(
             "<strong>Efficiency is not power.</strong> A propeller of better open-water efficiency can need more power "
