@@ -99,9 +99,11 @@ class RunController:
     def _check(self, case: Case | None, changes: Mapping[str, int]) -> None:
         stored = self._store.case
         if case is not None and not is_same_ship(case.replaced("optimization", **_settings(stored)), stored):
+            aboard = (
+                " with the files that it holds; 'Continue' on the page goes on with those" if self._store.files else ""
+            )
             raise InputError(
-                f"{self.path}: holds a run of the case '{stored.name}' as it was when the run was started"
-                f"{', with the files that it named' if self._store.files else ''}; "
+                f"{self.path}: holds a run of the case '{stored.name}' as it was when the run was started{aboard}; "
                 "give that case again, or choose another file"
             )
         for name in _FIXED_SETTINGS:

@@ -17,6 +17,7 @@ from run_files import content
 
 from hpsop_core.case.case import load_case
 from hpsop_core.cli.main import main
+from hpsop_core.runs.reader import open_run
 
 RUN = "run.hpsop"
 VARIABLES = [
@@ -194,3 +195,25 @@ def test_an_interrupt_pauses_cleanly_and_says_how_to_go_on(folder: Path, tmp_pat
     whole = hpsop(*words[:3], "whole.hpsop", *plan, folder=tmp_path)
     assert whole.returncode == 0, whole.stderr
     assert content(tmp_path / "int.hpsop") == content(tmp_path / "whole.hpsop")
+
+
+def test_a_terminal_that_is_closed_ends_the_run_in_good_order(tmp_path: Path) -> None:
+    """The kernel tells the whole session by SIGHUP, and nothing can be printed any more."""
+    words = command(
+        "optimize", "dtc-p4119-paper", "--run", "hup.hpsop", "--generations", "60", "--level1-generations", "60"
+    )
+    process, terminal = pty.fork()
+    if process == 0:
+        os.chdir(tmp_path)
+        os.environ["PYTHONPATH"] = str(Path(__file__).resolve().parents[2])
+        os.execv(words[0], [*words, "--population", "12", "--workers", "2"])
+    seen = b""
+    while b"generation 2/60" not in seen:
+        seen += os.read(terminal, 4096)
+    os.close(terminal)
+    _, status = os.waitpid(process, 0)
+    assert os.WIFEXITED(status), "ended by itself, not by the signal"
+    run = open_run(tmp_path / "hup.hpsop")
+    assert run.state() == ("stopped", "")
+    assert run.progress()[0] >= 2
+    assert not (tmp_path / "hup.hpsop-wal").exists() and not (tmp_path / "hup.hpsop.lock").exists()

@@ -136,7 +136,7 @@ def test_an_edited_table_is_not_mixed_in(folder: Path) -> None:
     before = volume(case)
     write_hull(folder / "hull.csv", fullness=3.5)
     again = load_case(folder / "case.toml")
-    with pytest.raises(InputError, match=r"holds a run of the case 'own-hull' .* with the files that it named"):
+    with pytest.raises(InputError, match=r"holds a run of the case 'own-hull' .* with the files that it holds"):
         RunController(path, again, physics=physics())
     run = open_run(path)
     assert volume(run.case) == before
