@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import os
 import tomllib
 from collections.abc import Mapping
 from dataclasses import dataclass, field
@@ -27,6 +28,7 @@ from hpsop_core.case.sections import (
 from hpsop_core.case.ship import EngineSection, LoadingSection
 from hpsop_core.case.variables import VARIABLE_TABLE, DesignSpace
 from hpsop_core.errors import InputError
+from hpsop_core.reading import LARGEST_CASE, file_name, read_bytes
 
 SHIPPED_CASES = ("dtc-p4119", "dtc-p4119-paper", "dtc-p4119-power")
 DEFAULT_CASE = SHIPPED_CASES[0]
@@ -198,13 +200,13 @@ def load_case(name_or_path: str | Path) -> Case:
     if name in SHIPPED_CASES:
         return case_from_toml(asset_path("cases", f"{name}.toml").read_text(encoding="utf-8"), f"{name}.toml")
     path = Path(name_or_path)
-    if not path.is_file():
-        raise InputError(f"{name}: no such case; give a TOML file or one of {', '.join(SHIPPED_CASES)}")
+    if "\0" in name or not os.path.lexists(path):
+        raise InputError(f"{file_name(path)}: no such case; give a TOML file or one of {', '.join(SHIPPED_CASES)}")
     try:
         # "sig": an editor may have put a byte-order mark before the first letter
-        content = path.read_text(encoding="utf-8-sig")
-    except (OSError, UnicodeDecodeError) as error:
-        raise InputError(f"{name}: cannot be read as a UTF-8 text ({error}); give a TOML file") from error
+        content = read_bytes(path, LARGEST_CASE, "a case in TOML").decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        raise InputError(f"{name}: cannot be read as a UTF-8 text ({error.reason}); give a TOML file") from error
     return case_from_toml(content, name, path.resolve().parent)
 
 
@@ -223,6 +225,10 @@ def case_from_toml(content: str, where: str, folder: Path | None = None) -> Case
         tables = tomllib.loads(content)
     except tomllib.TOMLDecodeError as error:
         raise InputError(f"{where}: not valid TOML: {error}; mend that line") from error
+    except (ValueError, RecursionError) as error:
+        # a number of thousands of digits, tables in tables in tables
+        why = "too deep" if isinstance(error, RecursionError) else "a number is too long"
+        raise InputError(f"{where}: not a case: {why}; compare it with docs/case.md") from error
     known = [*_TEXTS, "bounds", *SECTIONS]
     values: dict[str, Any] = {}
     for key, value in tables.items():
@@ -279,8 +285,13 @@ def _absolute(section: Any, where: str, names: tuple[str, ...], folder: Path) ->
     Raises:
         InputError: there is no such file.
     """
-    changes = {name: str((folder / getattr(section, name)).resolve()) for name in names if getattr(section, name)}
-    for name, path in changes.items():
-        if not Path(path).is_file():
-            raise InputError(f"{where}: {name}: there is no file {path}; give a path from the case file's folder")
+    changes = {}
+    for name in names:
+        if getattr(section, name):
+            path = folder / getattr(section, name)
+            if "\0" in str(path) or not os.path.isfile(path):
+                raise InputError(
+                    f"{where}: {name}: there is no file {file_name(path)}; give a path from the case file's folder"
+                )
+            changes[name] = str(path.resolve())
     return dataclasses.replace(section, **changes)

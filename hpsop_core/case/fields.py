@@ -16,7 +16,7 @@ from typing import Any, TypeVar
 
 import tomli_w
 
-from hpsop_core.errors import InputError
+from hpsop_core.errors import InputError, shown
 
 # where a dataclass field keeps its rule
 KEY = "hpsop"
@@ -91,9 +91,9 @@ def rules(section: type[Any]) -> dict[str, FieldRule]:
 
 def unknown_name(name: str, known: Sequence[str], where: str) -> InputError:
     """The error for a name that does not exist, with the nearest one that does."""
-    near = difflib.get_close_matches(name, known, n=1)
+    near = difflib.get_close_matches(name[:100], known, n=1)
     remedy = f"did you mean '{near[0]}'?" if near else f"known: {', '.join(known)}"
-    return InputError(f"{where}: unknown field '{name}'; {remedy}")
+    return InputError(f"{where}: unknown field {shown(name)}; {remedy}")
 
 
 def checked_value(value: object, rule: FieldRule, where: str) -> Any:
@@ -111,32 +111,32 @@ def checked_value(value: object, rule: FieldRule, where: str) -> Any:
         return None
     if rule.kind == "flag":
         if not isinstance(value, bool):
-            raise InputError(f"{where}: {value!r} is not true or false; write true or false")
+            raise InputError(f"{where}: {shown(value)} is not true or false; write true or false")
         return value
     if rule.kind == "text":
         if not isinstance(value, str):
-            raise InputError(f"{where}: {value!r} is not a text; put it in quotes")
+            raise InputError(f"{where}: {shown(value)} is not a text; put it in quotes")
         return value
     if rule.kind == "choice":
         if not isinstance(value, str) or value not in rule.choices:
-            raise InputError(f"{where}: {value!r} is no option; use one of {', '.join(rule.choices)}")
+            raise InputError(f"{where}: {shown(value)} is no option; use one of {', '.join(rule.choices)}")
         return value
     if rule.kind == "numbers":
         if not isinstance(value, Sequence) or isinstance(value, str):
-            raise InputError(f"{where}: {value!r} is not a list of numbers; write for example [0.22, 0.27]")
+            raise InputError(f"{where}: {shown(value)} is not a list of numbers; write for example [0.22, 0.27]")
         return tuple(_checked_number(item, rule, f"{where}[{index}]") for index, item in enumerate(value))
     return _checked_number(value, rule, where)
 
 
 def _checked_number(value: object, rule: FieldRule, where: str) -> float | int:
     if isinstance(value, bool) or not isinstance(value, (int, float)):
-        raise InputError(f"{where}: {value!r} is not a number; give a number{_limits(rule)}")
+        raise InputError(f"{where}: {shown(value)} is not a number; give a number{_limits(rule)}")
     # Not isfinite: Python's whole numbers may be greater than every double.
     if value != value or abs(value) == math.inf:
-        raise InputError(f"{where}: {value} is not a finite number; give a number{_limits(rule)}")
+        raise InputError(f"{where}: {shown(value)} is not a finite number; give a number{_limits(rule)}")
     if rule.kind == "integer":
         if value != round(value):
-            raise InputError(f"{where}: {value} is not a whole number; give a whole number{_limits(rule)}")
+            raise InputError(f"{where}: {shown(value)} is not a whole number; give a whole number{_limits(rule)}")
         value = round(value)
     if not rule.lower <= value <= rule.upper:
         raise InputError(f"{where}: {_shown(value)} is outside its limits; give a number{_limits(rule)}")
@@ -192,8 +192,8 @@ def toml_text(tables: Mapping[str, object]) -> str:
         written.encode()
     except UnicodeEncodeError as error:
         line = written[: error.start].count("\n")
-        shown = ascii(written.splitlines()[line])
-        raise InputError(f"case: {shown} is no Unicode text; rename the file or mend the text") from error
+        there = ascii(written.splitlines()[line])
+        raise InputError(f"case: {there} is no Unicode text; rename the file or mend the text") from error
     return written
 
 

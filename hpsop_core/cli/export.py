@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import argparse
+import os
 import shlex
 import sys
 from pathlib import Path
@@ -73,7 +74,7 @@ def _reproduce(arguments: argparse.Namespace) -> int:
         run_path(arguments.to)
     else:
         path = run_path(arguments.to)
-        if path.exists() and path.stat().st_size:
+        if os.path.exists(path) and path.stat().st_size:
             checked_run(open_run(path))
         if not _searched(path, arguments):
             return INTERRUPTED

@@ -8,7 +8,7 @@ import sys
 from collections.abc import Sequence
 from typing import NoReturn
 
-from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.errors import HpsopError, InputError, message_line, shown
 from hpsop_core.version import __version__
 
 USAGE_ERROR = 2
@@ -18,7 +18,7 @@ class _Parser(argparse.ArgumentParser):
     """An argument parser whose errors are one line, with the help that leads on."""
 
     def error(self, message: str) -> NoReturn:
-        print(f"{self.prog}: {message}; see '{self.prog} --help'", file=sys.stderr)
+        print(f"{self.prog}: {message_line(message)}; see '{self.prog} --help'", file=sys.stderr)
         raise SystemExit(USAGE_ERROR)
 
 
@@ -55,6 +55,11 @@ def main(arguments: Sequence[str] | None = None) -> int:
         # The reader of our output went away (`hpsop ... | head`); the rest has nowhere to go.
         os.dup2(os.open(os.devnull, os.O_WRONLY), sys.stdout.fileno())
         return 0
+    except OSError as error:
+        # a name or a place that only the operating system refuses, at the last moment
+        name = "" if error.filename is None else f"{shown(str(error.filename)[-60:])}: "
+        print(f"hpsop: {name}{message_line(error.strerror or str(error))}; choose another place", file=sys.stderr)
+        return USAGE_ERROR
 
 
 if __name__ == "__main__":

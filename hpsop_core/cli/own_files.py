@@ -67,7 +67,7 @@ def _hull(arguments: argparse.Namespace) -> int:
     options = read_options(arguments)
     picture = _picture_path(arguments.picture)
     case_path = None if arguments.case is None else Path(arguments.case)
-    if case_path is not None and case_path.exists() and not arguments.force:
+    if case_path is not None and os.path.exists(case_path) and not arguments.force:
         raise InputError(f"{case_path}: is there already; add --force to replace it")
     file = read_hull(arguments.file, options)
     written = []

@@ -144,10 +144,10 @@ def _written(data: _Design, target: Path, formats: Sequence[str]) -> tuple[Path,
 
 
 def _check_target(target: Path, force: bool) -> None:
-    if target.exists() and not target.is_dir():
+    if os.path.exists(target) and not os.path.isdir(target):
         raise InputError(f"{target}: is a file; --to needs a folder")
     try:
-        occupied = target.is_dir() and any(target.iterdir())
+        occupied = os.path.isdir(target) and any(target.iterdir())
     except OSError as error:
         raise InputError(f"{target}: cannot be read ({error.strerror}); choose another folder") from error
     if occupied and not force:

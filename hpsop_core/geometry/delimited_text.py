@@ -9,7 +9,8 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
-from hpsop_core.errors import InputError
+from hpsop_core.errors import InputError, shown
+from hpsop_core.reading import read_bytes
 
 # A table of a ship is far smaller; what is larger is another kind of file.
 LARGEST_TEXT = 64 * 1024 * 1024
@@ -82,12 +83,7 @@ def decoded(path: Path) -> tuple[str, tuple[str, ...]]:
     Raises:
         InputError: unreadable, too large, or no text.
     """
-    try:
-        if path.stat().st_size > LARGEST_TEXT:
-            raise InputError(f"{path}: is larger than {LARGEST_TEXT >> 20} MB; a table of offsets is far smaller")
-        raw = path.read_bytes()
-    except OSError as problem:
-        raise InputError(f"{path}: cannot be read ({problem.strerror or problem})") from problem
+    raw = read_bytes(path, LARGEST_TEXT, "a table as text")
     for mark, encoding in ((b"\xff\xfe", "utf-16"), (b"\xfe\xff", "utf-16")):
         if raw.startswith(mark):
             encodings: Sequence[str] = (encoding,)
@@ -120,7 +116,11 @@ def _cells(line: str, separator: str, tabs_run: bool) -> tuple[str, ...]:
         return tuple(cell.strip("\"'") for cell in line.split())
     if tabs_run:
         return tuple(cell.strip().strip('"') for cell in re.split(r"\t+", line.strip("\t ")))
-    return tuple(cell.strip() for cell in next(csv.reader([line], delimiter=separator, skipinitialspace=True)))
+    try:
+        cells = next(csv.reader([line], delimiter=separator, skipinitialspace=True))
+    except csv.Error as problem:
+        raise InputError(f"the line that begins {shown(line)} cannot be read ({problem})") from problem
+    return tuple(cell.strip() for cell in cells)
 
 
 def read_text_table(path: Path) -> TextTable:
@@ -162,7 +162,10 @@ def text_table(text: str, name: str, notes: tuple[str, ...] = ()) -> TextTable:
     tabs_run = separator == "\t" and "\t\t" in names
     lines = []
     for number, line in content:
-        lines.append(Line(number, _cells(line, separator, tabs_run)))
+        try:
+            lines.append(Line(number, _cells(line, separator, tabs_run)))
+        except InputError as problem:
+            raise InputError(f"{name} row {number}: {problem}") from problem
     comma = separator != "," and any(_DECIMAL_COMMA.fullmatch(cell) for line in lines[1:] for cell in line.cells)
     if comma:
         notes = (*notes, "numbers with a decimal comma")

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import shlex
 import time
 from collections.abc import Callable, Sequence
@@ -89,11 +90,11 @@ def write_report(run: RunReader, target: str | Path, force: bool = False) -> Pat
         InputError: a file that may not or cannot be written.
     """
     path = Path(target)
-    if path.is_dir():
+    if os.path.isdir(path):
         raise InputError(f"{path}: is a folder; --to needs a file, for example {path / 'report.html'}")
-    if path.suffix == ".hpsop" or (path.exists() and path.samefile(run.path)):
+    if path.suffix == ".hpsop" or (os.path.exists(path) and path.samefile(run.path)):
         raise InputError(f"{path}: is a run file's name; --to needs another one, for example report.html")
-    if path.exists() and not force:
+    if os.path.exists(path) and not force:
         raise InputError(f"{path}: is there already; give --force to replace it, or another name")
     write_whole(path, report_html(run))
     return path

@@ -75,8 +75,8 @@ def connect_reader(path: Path) -> sqlite3.Connection:
     Raises:
         InputError: there is no such file.
     """
-    if not path.is_file():
-        if path.is_dir() or not os.path.lexists(path):
+    if not os.path.isfile(path):
+        if os.path.isdir(path) or not os.path.lexists(path):
             raise InputError(f"{path}: no such run file; start one with 'hpsop optimize CASE --run {path}'")
         raise InputError(f"{path}: is no regular file; choose another file")
     attempts = 3

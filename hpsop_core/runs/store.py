@@ -92,7 +92,7 @@ class RunStore:
         self._guard = threading.RLock()
         self._dictionary = b""
         self._real = real_path(path)
-        if path.is_dir():
+        if os.path.isdir(path):
             raise InputError(f"{path}: is a folder; name a file, for example {path / 'run.hpsop'}")
         self._lock = WriterLock(path)
         try:
@@ -115,9 +115,9 @@ class RunStore:
         lost = self._lost_log()
         if lost:
             raise InputError(lost)
-        if case is None and not path.is_file():
+        if case is None and not os.path.isfile(path):
             raise missing
-        there, self._had_log = self._real.exists(), log_path(self._real).exists()
+        there, self._had_log = os.path.exists(self._real), os.path.exists(log_path(self._real))
         connection = None
         try:
             with damage_told(path, "be written", "make room or choose another place"):

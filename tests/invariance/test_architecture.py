@@ -23,6 +23,7 @@ TREES = ("hpsop_core", "explorer", "tools")
 ORDER = (
     "typing_aliases",
     "errors",
+    "reading",
     "version",
     "model_test",
     "markup",

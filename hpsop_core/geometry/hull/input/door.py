@@ -19,6 +19,7 @@ from hpsop_core.geometry.hull.input.slices import sliced
 from hpsop_core.geometry.hull.input.surface_checks import check_between, check_fit
 from hpsop_core.geometry.hull.input.understood import UnderstoodHull, understood
 from hpsop_core.geometry.hull.table_stations import HalfBreadths
+from hpsop_core.reading import LARGEST_MESH, check_regular
 
 _READERS = {
     **dict.fromkeys(mesh.SUFFIXES, mesh.read_mesh),
@@ -59,8 +60,7 @@ def read_table(path: Path | str, options: ReadOptions) -> ShipTable:
     path = Path(path)
     suffix = path.suffix.lower()
     if suffix in _READERS:
-        if not path.is_file():
-            raise InputError(f"{path}: cannot be read (no such file)")
+        check_regular(path, LARGEST_MESH, "a mesh or surfaces of the hull")
         return sliced(triangles.in_ship_axes(_READERS[suffix](path), options))
     return in_ship_axes(_file_table(read_text_table(path), options), options)
 

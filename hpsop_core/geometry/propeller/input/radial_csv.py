@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.delimited_text import Line, TextTable, decoded, is_number, text_table
+from hpsop_core.geometry.delimited_text import LARGEST_TEXT, Line, TextTable, decoded, is_number, text_table
 from hpsop_core.geometry.propeller.input.columns import (
     COLUMNS,
     MARKS,
@@ -19,6 +19,7 @@ from hpsop_core.geometry.propeller.input.columns import (
     column_of,
 )
 from hpsop_core.geometry.propeller.radial_table import RadialTable
+from hpsop_core.reading import check_regular
 
 # What a blade can have, and what the remedy is where it does not: a value outside is nearly always a unit.
 _LIMITS = {
@@ -69,8 +70,7 @@ def read_radial_table(path: str | Path, blade_count: int = 3, name: str | None =
     """
     file = Path(path)
     wanted = ",".join(COLUMNS)
-    if not file.is_file():
-        raise InputError(f"{path}: cannot be read (no such file); give a CSV file with {wanted}")
+    check_regular(file, LARGEST_TEXT, f"a CSV file with {wanted}")
     try:
         text, notes = decoded(file)
     except InputError as error:
