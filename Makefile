@@ -4,12 +4,14 @@ VENV := .venv
 BIN := $(VENV)/bin
 OLDEST := .venv-oldest
 OLDEST_PYTHON ?= python3.11
-INSTALL := $(BIN)/python -m pip install --quiet --disable-pip-version-check --constraint constraints.txt
+PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
+# Exact versions; with the hash of every file too where these are listed for this Python and machine (`make lock`).
+LIST = constraints/$(shell $(BIN)/python -c 'import sys, sysconfig; print(f"cp{sys.version_info.major}{sys.version_info.minor}-{sysconfig.get_platform()}")')
 # One thread of linear algebra a process: the same bits everywhere, and two cores for two workers.
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 
-.PHONY: explore test test-core test-oldest lint soak benchmark pictures chromium clean
+.PHONY: explore test test-core test-oldest lint soak benchmark pictures chromium lock clean
 
 explore: $(VENV)/installed
 	$(BIN)/hpsop-explore $(ARGS)
@@ -50,13 +52,21 @@ $(VENV)/bin/python:
 		|| { echo "hpsop needs Python 3.11 or newer; set PYTHON=python3.11" >&2; exit 1; }
 	@$(PYTHON) -m venv $(VENV) || { rm -rf $(VENV); echo "no virtual environment: install the package python3-venv" >&2; exit 1; }
 
-$(VENV)/installed: $(VENV)/bin/python pyproject.toml constraints.txt
-	$(INSTALL) --editable .
+$(VENV)/installed: $(VENV)/bin/python pyproject.toml constraints.txt $(wildcard constraints/*.txt)
+	@if [ -f $(LIST).txt ]; then \
+		$(PIP) --require-hashes --requirement $(LIST).txt && $(PIP) --no-deps --no-build-isolation --editable .; \
+	else $(PIP) --constraint constraints.txt --editable .; fi
 	@touch $@
 
-$(VENV)/installed-for-tests: $(VENV)/bin/python pyproject.toml constraints.txt
-	$(INSTALL) --editable '.[test]'
+$(VENV)/installed-for-tests: $(VENV)/bin/python pyproject.toml constraints.txt $(wildcard constraints/*.txt)
+	@if [ -f $(LIST)-tests.txt ]; then \
+		$(PIP) --require-hashes --requirement $(LIST)-tests.txt && $(PIP) --no-deps --no-build-isolation --editable .; \
+	else $(PIP) --constraint constraints.txt --editable '.[test]'; fi
 	@touch $@ $(VENV)/installed
+
+# After constraints.txt was changed: the hashes of the files that this Python and machine take.
+lock: $(VENV)/bin/python
+	$(BIN)/python -m tools.lock
 
 $(OLDEST)/bin/python:
 	@$(OLDEST_PYTHON) -m venv $(OLDEST) || { rm -rf $(OLDEST); \

@@ -43,7 +43,7 @@ def check_regular(path: Path, most: int, what: str) -> None:
         raise InputError(f"{name}: cannot be read ({reason}); name {what}") from problem
     if not stat.S_ISREG(status.st_mode):
         kind = "a folder" if stat.S_ISDIR(status.st_mode) else "a pipe or a device"
-        raise InputError(f"{name}: is {kind} and no file; name {what}, saved as a file")
+        raise InputError(f"{name}: cannot be read: it is {kind}, not a file; name {what}")
     if status.st_size > most:
         raise InputError(f"{name}: is larger than {most >> 20} MB; {what} is far smaller")
 

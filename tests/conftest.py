@@ -1,9 +1,14 @@
-"""Marks the tests that are run with the oldest allowed versions too (`make test-oldest`), a file for each library."""
+"""Marks the tests that are run with the oldest allowed versions too (`make test-oldest`), a file for each library.
+
+And lets no test call out of the machine.
+"""
 
 from __future__ import annotations
 
+from collections.abc import Iterator
 from pathlib import Path
 
+import no_calls_out
 import pytest
 
 OLDEST = {
@@ -29,6 +34,18 @@ OLDEST = {
     "regression/test_interface.py": "every solver",
     "regression/test_packaging.py": "the wheel",
 }
+
+
+no_calls_out.watch()
+
+
+@pytest.fixture(autouse=True)
+def _nothing_calls_out() -> Iterator[None]:
+    """Also where the code under test swallowed the refusal."""
+    yield
+    found = list(no_calls_out.CALLS_OUT)
+    no_calls_out.CALLS_OUT.clear()
+    assert not found, found
 
 
 def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool | None:

@@ -3,6 +3,7 @@
 * case_reference: docs/case.md from the declarations of the fields
 * fit_dtc: the shipped hull from the offsets of the reference ship; dtc_sections: those offsets, read
 * hull_campaign: public ships as tables of every kind, read and measured
+* licences: docs/licences.md from what is installed; lock: the pins with hashes that `make` installs
 * pictures: a folder: the pictures of the docs
 * chromium: which Chromium shows the page without a screen, and how it starts
 """

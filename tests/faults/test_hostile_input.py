@@ -330,14 +330,29 @@ def test_fuzz_run_files(tmp_path: Path, data: st.DataObject) -> None:
 @pytest.mark.soak
 def test_fuzz_at_length(tmp_path: Path) -> None:
     """Thousands of examples of each kind."""
-    SOAK(given(mutated(CASE.encode()))(_fuzz_case))()
-    for content, read in (
-        (OFFSETS, lambda path: load_hull(path, length=100.0, draft=6.0)),
-        (BLADE, lambda path: load_propeller(path, blade_count=4)),
-    ):
-        SOAK(given(mutated(content.encode()))(lambda found, read=read: _fuzz_file(tmp_path, "my.csv", found, read)))()
+
+    def at_length(content: bytes, try_one: Callable[[bytes], None]) -> None:
+        @SOAK
+        @given(mutated(content))
+        def run(found: bytes) -> None:
+            try_one(found)
+
+        run()
+
+    def table(found: bytes) -> None:
+        _fuzz_file(tmp_path, "my.csv", found, lambda path: load_hull(path, length=100.0, draft=6.0))
+
+    def blade(found: bytes) -> None:
+        _fuzz_file(tmp_path, "my.csv", found, lambda path: load_propeller(path, blade_count=4))
+
+    def mesh(kind: str) -> Callable[[bytes], None]:
+        return lambda found: _fuzz_file(tmp_path, f"my.{kind}", found, _hull)
+
+    at_length(CASE.encode(), _fuzz_case)
+    at_length(OFFSETS.encode(), table)
+    at_length(BLADE.encode(), blade)
     for kind, content in _meshes().items():
-        SOAK(given(mutated(content))(lambda found, kind=kind: _fuzz_file(tmp_path, f"my.{kind}", found, _hull)))()
+        at_length(content, mesh(kind))
 
 
 def test_the_good_files_are_understood() -> None:

@@ -5,6 +5,8 @@ from __future__ import annotations
 from dataclasses import dataclass
 from pathlib import Path
 
+import numpy as np
+
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.delimited_text import TextTable, read_text_table, text_table
 from hpsop_core.geometry.hull.fit_table import SHAFT_HEIGHT_TO_DRAFT, parent_from_table
@@ -125,7 +127,13 @@ def read_hull(
     Raises:
         InputError: one line that names the place in the file and the remedy.
     """
-    return hull_from_table(read_table(path, options or ReadOptions()), shaft_height, boss_x)
+    try:
+        return hull_from_table(read_table(path, options or ReadOptions()), shaft_height, boss_x)
+    except (ValueError, IndexError, ArithmeticError, np.linalg.LinAlgError) as problem:
+        # What no check foresaw: a file that makes no ship is no reason for a traceback.
+        raise InputError(
+            f"{Path(path).name}: cannot be understood as a hull ({problem}); compare it with docs/bring-your-ship.md"
+        ) from problem
 
 
 def parent_hull_from_offsets(path: Path | str, length: float, draft: float) -> ParentHull:
