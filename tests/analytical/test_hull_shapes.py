@@ -133,3 +133,25 @@ def test_draft_between_waterlines(tmp_path: Path) -> None:
     assert parent.breadth == pytest.approx(2.0 * 6.3, rel=1e-6)  # at the draft, not at the last waterline below it
     # The corner between flat bottom and side is rounded a little by the fit.
     assert parent.hydrostatics.displaced_volume == pytest.approx(exact, rel=2e-3)
+
+
+def test_a_chine_stays_sharp(tmp_path: Path) -> None:
+    """Straight sections with a chine at 1.6 m: the surface turns there as the readings do, and nowhere else."""
+    x, z = np.linspace(0.0, 60.0, 31), np.linspace(0.0, 4.0, 11)
+    half = 7.0 * np.clip(1.0 - np.abs(x / 30.0 - 1.0) ** 2.5, 0.0, None)[:, None]
+    y = half * np.where(z < 1.6, 0.85 * z / 1.6, 0.85 + 0.15 * (z - 1.6) / 2.4)
+    rows = [f"{a:.6g},{b:.6g},{c:.6g}" for a, row in zip(x, y, strict=True) for b, c in zip(z, row, strict=True)]
+    path = tmp_path / "chine.csv"
+    path.write_text("station_x_m,waterline_z_m,half_breadth_m\n" + "\n".join(rows) + "\n")
+    parent = parent_hull_from_offsets(path, 60.0, 4.0)
+    section = parent.surface("main").evaluate(parent.parameter("main", np.array([30.0])), np.linspace(0.0, 1.0, 401))[0]
+    angle = np.degrees(np.arctan2(np.diff(section[:, 2]), np.diff(section[:, 1])))
+    at_chine = np.abs(section[1:, 2] - 1.6) < 0.15
+    below, above = angle[(section[1:, 2] > 0.4) & (section[1:, 2] < 1.2)], angle[section[1:, 2] > 2.2]
+    flat, steep = np.degrees(np.arctan2(1.6, 0.85 * 7.0)), np.degrees(np.arctan2(2.4, 0.15 * 7.0))
+    assert below == pytest.approx(flat, abs=1.5) and above == pytest.approx(steep, abs=1.5)
+    # Between two of 400 points along the girth: nearly all of the turn of 51 degrees.
+    assert float(np.max(np.diff(angle[at_chine]))) > 0.8 * (steep - flat)
+    # The trapezoid is exact for straight sections; along the ship stations are 2 m apart.
+    exact = 2.0 * 7.0 * 60.0 * (1.0 - 1.0 / 3.5) * (0.5 * 0.85 * 1.6 + 0.5 * (0.85 + 1.0) * 2.4)
+    assert parent.hydrostatics.displaced_volume == pytest.approx(exact, rel=2e-3)

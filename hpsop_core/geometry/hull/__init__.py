@@ -5,6 +5,6 @@ changes volume and centre of buoyancy), ``hydrostatics``, ``offset_table`` (half
 ``panels`` (quadrilaterals for the panel method), ``mesh`` (watertight triangles).
 
 Fitting: ``fit`` (least squares of one patch), ``fit_plan`` (a hull's patches declared, and the loop that fits them),
-``table_stations`` and ``table_ends`` (what a table of half-breadths says), ``table_plans`` (the patches it is divided
-into), ``fit_table`` (from a table to a parent hull), ``input`` (from a user's file to a table).
+``table_stations``, ``table_ends`` and ``table_knuckles`` (what a table of half-breadths says), ``table_plans`` (the
+patches it is divided into), ``fit_table`` (from a table to a parent hull), ``input`` (from a user's file to a table).
 """

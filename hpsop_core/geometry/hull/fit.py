@@ -87,23 +87,44 @@ class Section:
     Attributes:
         x: station in metres.
         points: (k, 2) half-breadths and heights from v = 0 to v = 1, metres.
+        knuckle: index of a point where the section turns sharply, and the v that it has in every section of the patch.
     """
 
     x: float
     points: Array
+    knuckle: tuple[int, float] | None = None
 
     def resampled(self, fractions: Array) -> Array:
-        """Points at fractions of the chord length, through a shape-preserving cubic: shape (len(fractions), 2)."""
+        """Points at fractions of the chord length, through a shape-preserving cubic: shape (len(fractions), 2).
+
+        A knuckle stays sharp: each side of it has a curve of its own.
+        """
         chord = self.chord_fractions()
-        if len(self.points) < 3:
-            return np.column_stack([np.interp(fractions, chord, self.points[:, axis]) for axis in (0, 1)])
-        return np.asarray(PchipInterpolator(chord, self.points)(fractions))
+        if self.knuckle is None:
+            return _through(chord, self.points, fractions)
+        at, v = self.knuckle
+        below = _through(chord[: at + 1], self.points[: at + 1], np.minimum(fractions, v))
+        above = _through(chord[at:], self.points[at:], np.maximum(fractions, v))
+        return np.where((fractions <= v)[:, None], below, above)
 
     def chord_fractions(self) -> Array:
-        """Cumulative chord length of the points over its total, shape (k,)."""
+        """Cumulative chord length of the points over its total, shape (k,); with a knuckle, over that of each side."""
         steps = np.hypot(*np.diff(self.points, axis=0).T)
         total = np.concatenate([[0.0], np.cumsum(steps)])
-        return np.asarray(total / total[-1])
+        if self.knuckle is None:
+            return np.asarray(total / total[-1])
+        at, v = self.knuckle
+        above = v + (1.0 - v) * (total - total[at]) / (total[-1] - total[at])
+        fractions = np.where(np.arange(len(total)) <= at, v * total / total[at], above)
+        fractions[-1] = 1.0
+        return np.asarray(fractions)
+
+
+def _through(chord: Array, points: Array, fractions: Array) -> Array:
+    """Points (n, 2) at fractions of a chord, by a shape-preserving cubic, or a line where there are only two."""
+    if len(points) < 3:
+        return np.column_stack([np.interp(fractions, chord, points[:, axis]) for axis in (0, 1)])
+    return np.asarray(PchipInterpolator(chord, points)(fractions))
 
 
 def tidy_section(x: float, points: Array, least_step: float = 1e-3) -> Section:

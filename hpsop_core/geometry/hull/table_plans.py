@@ -32,6 +32,7 @@ from hpsop_core.geometry.hull.fit_plan import (
     upper_edge_at,
 )
 from hpsop_core.geometry.hull.table_ends import HullEnd, hull_end
+from hpsop_core.geometry.hull.table_knuckles import with_knuckle
 from hpsop_core.geometry.hull.table_stations import (
     HalfBreadths,
     TableStation,
@@ -52,6 +53,8 @@ LEAST_HALF_BREADTH = 1e-7
 HEIGHT_ROOM = 0.15
 # Upright sides where the table ends at the waterline, as a part of the draft.
 WALL_HEIGHT_TO_DRAFT = 0.5
+# Other knots keep this distance, in v, from a knuckle's.
+KNUCKLE_ROOM = 0.03
 # A further knot this far, in v, from the ends of a post.
 CORNER = 0.012
 SKEG_KNOTS = tuple(float(knot) for knot in np.linspace(0.15, 0.85, 6))
@@ -151,6 +154,11 @@ def _main(division: _Division) -> tuple[PatchPlan, float, tuple[float, float]]:
             interior = knots_with(interior, bulb_part, bulb_part)
     else:
         fore_end = hull_end(table, floating, True, draft)
+        knuckle = with_knuckle(sections) if division.border is None else None
+        if knuckle is not None:
+            sections, v = knuckle
+            # Three knots: the surface may turn there, along the whole patch.
+            interior = sorted([*(k for k in interior if abs(k - v) > KNUCKLE_ROOM), v, v, v])
     if division.border is None:
         aft_end = hull_end(table, stations[division.aft : division.forward + 1], False, draft)
     else:
