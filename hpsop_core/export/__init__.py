@@ -2,7 +2,7 @@
 
 * design_files: a design's files into a folder or an archive, all of them or none; formats: which there are
 * surfaces: NURBS; exchange: handed to geomdl, openNURBS and OpenCASCADE; rhino: 3DM; solids: STEP and IGES
-* meshes: STL and GLB; lines: DXF
+* meshes: STL and GLB; slivers: taken out of a mesh; lines: DXF
 * tables, offsets: CSV
 
 ``hpsop_core.export(run, design, folder, formats=None, force=False)`` writes a design's files, all of them or none.

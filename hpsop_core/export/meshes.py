@@ -1,22 +1,27 @@
-"""A design as triangle meshes: STL for solvers and printers, GLB for viewers."""
+"""A design as triangle meshes: STL in named regions for solvers and printers, GLB for viewers."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 from typing import Any
 
 import numpy as np
 import trimesh
-from trimesh.exchange.stl import export_stl
 
+from hpsop_core.export.slivers import without_slivers
 from hpsop_core.geometry.clearance import propeller_placement
 from hpsop_core.geometry.hull.hull import Hull
-from hpsop_core.geometry.hull.mesh import hull_mesh, hull_view_parts
-from hpsop_core.geometry.propeller.mesh import propeller_mesh
+from hpsop_core.geometry.hull.mesh import REGIONS, hull_mesh, hull_view_parts
+from hpsop_core.geometry.propeller.mesh import propeller_mesh, propeller_topology
 from hpsop_core.geometry.propeller.propeller import Propeller
+from hpsop_core.typing_aliases import Array, IntArray
 
 # glTF's y is up: x forward stays, our z becomes its y, our y its -z.
 _TO_GLTF = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
+_SHARP_EDGE = float(np.radians(35.0))
+_VERTEX = "vertex %.6f %.6f %.6f\n"
+_FACET = f"facet normal %.4f %.4f %.4f\nouter loop\n{3 * _VERTEX}endloop\nendfacet"
 _COLOURS = {"underwater": (150, 60, 50, 255), "topsides": (70, 95, 120, 255), "propeller": (190, 150, 60, 255)}
 
 
@@ -30,12 +35,39 @@ def placed_propeller_mesh(hull: Hull, propeller: Propeller) -> trimesh.Trimesh:
 def write_stl(hull_path: Path, propeller_path: Path, hull: Hull, propeller: Propeller) -> None:
     """Two closed solids in ship axes, m: the whole hull to its deck, and the propeller in its place.
 
+    Text files with a ``solid`` for each region, as mesh generators name patches: "hull", "deck" and "transom"; "blades"
+    (with their fillets) and "hub". Slivers are taken away, down to half a degree at the root of a trailing edge.
+
     Raises:
         OSError: a file cannot be written.
     """
-    solids = {hull_path: hull_mesh(hull, "export"), propeller_path: placed_propeller_mesh(hull, propeller)}
-    for path, mesh in solids.items():
-        path.write_bytes(export_stl(mesh))
+    ship = hull_mesh(hull, "export")
+    region = np.asarray(ship.face_attributes["region"], dtype=np.int64)
+    # Above and below the waterline are cleaned apart, so that it stays a line of edges.
+    wet = np.asarray(ship.face_attributes["underwater"], dtype=np.int64)
+    vertices, faces, place = without_slivers(
+        np.array(ship.vertices), np.array(ship.faces), 2 * region + wet, _SHARP_EDGE
+    )
+    _write_regions(hull_path, REGIONS, vertices, faces, place // 2)
+    screw, topology = placed_propeller_mesh(hull, propeller), propeller_topology(propeller.blade_count, "export")
+    regions = np.repeat([0, 1], [len(topology.blades), len(topology.hub)])
+    # The edges of a trailing edge are not kept: where it runs into the fillet, it is narrower than any mesh.
+    cleaned = without_slivers(np.array(screw.vertices), np.array(screw.faces), regions, np.pi)
+    _write_regions(propeller_path, ("blades", "hub"), *cleaned)
+
+
+def _write_regions(path: Path, names: Sequence[str], vertices: Array, faces: IntArray, place: IntArray) -> None:
+    corners = vertices[faces]
+    normals = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
+    normals /= np.linalg.norm(normals, axis=1, keepdims=True)
+    rows: Array = np.concatenate([normals, corners.reshape(-1, 9)], axis=1)
+    with path.open("w", encoding="ascii") as file:
+        for number, name in enumerate(names):
+            chosen = rows[place == number]
+            if len(chosen):
+                file.write(f"solid {name}\n")
+                np.savetxt(file, chosen, fmt=_FACET)
+                file.write(f"endsolid {name}\n")
 
 
 def write_glb(path: Path, hull: Hull, propeller: Propeller) -> None:

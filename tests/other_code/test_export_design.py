@@ -14,6 +14,7 @@ import trimesh
 from hpsop_core import load_case, optimize
 from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.export.design_files import export_design
+from hpsop_core.export.slivers import least_angles
 from hpsop_core.geometry.clearance import propeller_placement
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.hull.input import parent_hull_from_offsets
@@ -92,9 +93,17 @@ def test_opennurbs_reads_the_same_surfaces(files: Path, hull: Hull, propeller: P
 
 
 def test_solids_are_closed_and_displace_what_hydrostatics_say(files: Path, hull: Hull, propeller: Propeller) -> None:
-    ship, screw = (trimesh.load(files / name) for name in ("hull.stl", "propeller.stl"))
-    for solid in (ship, screw):
+    scenes = [trimesh.load_scene(files / name) for name in ("hull.stl", "propeller.stl")]
+    assert [set(scene.geometry) for scene in scenes] == [{"hull", "deck", "transom"}, {"blades", "hub"}]
+    for part in ("deck", "transom"):
+        normals = np.abs(scenes[0].geometry[part].face_normals)
+        assert np.all(normals[:, 2 if part == "deck" else 0] > 0.7), part
+    ship, screw = (scene.to_mesh() for scene in scenes)
+    for solid, least in ((ship, 1.0), (screw, 0.5)):
+        solid.merge_vertices()
         assert solid.is_watertight and solid.volume > 0.0
+        # Half a degree at the foot of the trailing edge, which is a thousandth of the diameter wide.
+        assert np.degrees(np.min(least_angles(solid.vertices, solid.faces))) > least
     # Volume below the waterplane by Gauss's theorem with the field (0, 0, z - d), which is nought on the lid.
     # The mesh has vertices on the waterline: no triangle crosses it by more than STL's single precision.
     heights = ship.triangles[:, :, 2] - hull.draft

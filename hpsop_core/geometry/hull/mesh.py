@@ -19,12 +19,15 @@ from hpsop_core.geometry.hull.hull import Hull, ParentHull
 from hpsop_core.typing_aliases import Array, BoolArray, IntArray
 
 Resolution = Literal["drag", "view", "export"]
-# Cells along and across a whole hull side below and above the waterline: main length, short patches, girths.
-_COUNTS: dict[str, tuple[int, int, int, int]] = {
-    "drag": (64, 14, 26, 8),
-    "view": (112, 24, 36, 22),
-    "export": (280, 60, 96, 32),
+# Cells along and across a whole hull side below and above the waterline: main length, short patches, girths; and from
+# the side to the centreplane on deck and flat ends, where one long cell would be a sliver in a fine mesh.
+_COUNTS: dict[str, tuple[int, int, int, int, int]] = {
+    "drag": (64, 14, 26, 8, 1),
+    "view": (112, 24, 36, 22, 1),
+    "export": (280, 60, 96, 32, 6),
 }
+REGIONS = ("hull", "deck", "transom")
+"""Named parts of a whole hull's surface; the boss's flat end belongs to the hull."""
 # Parts of the length: neighbours agree to the rounding of the stored control points; the centreplane is met exactly.
 _MERGE, _CENTREPLANE = 6e-8, 3e-10
 
@@ -37,12 +40,14 @@ class HullTopology:
         vertices: (n, 3) in the parent's frame, m.
         faces: (m, 3) indices.
         underwater: (m,) true for faces below the design waterline.
+        regions: (m,) place in ``REGIONS``.
         parts: name -> (indices of the part's vertices, faces in those indices).
     """
 
     vertices: Array
     faces: IntArray
     underwater: BoolArray
+    regions: IntArray
     parts: dict[str, tuple[IntArray, IntArray]]
 
 
@@ -53,7 +58,8 @@ class _Piece:
     points: Array
     outward: bool
     underwater: bool
-    hard: bool
+    region: str = "hull"
+    hard: bool = False
 
 
 def _girth_breaks(parent: ParentHull) -> dict[str, list[float]]:
@@ -78,7 +84,7 @@ def patch_grids(parent: ParentHull, resolution: Resolution) -> dict[str, tuple[A
     """
     if resolution not in _COUNTS:
         raise InputError(f"mesh resolution '{resolution}': choose one of {', '.join(_COUNTS)}")
-    main, short, below, above = _COUNTS[resolution]
+    main, short, below, above, _ = _COUNTS[resolution]
     breaks = _girth_breaks(parent)
     grids: dict[str, tuple[Array, Array]] = {}
     for name in [*parent.underwater, *parent.topsides]:
@@ -93,12 +99,14 @@ def patch_grids(parent: ParentHull, resolution: Resolution) -> dict[str, tuple[A
     return grids
 
 
-def _flat_face(edge: Array, axis_height: Array) -> Array:
-    """Grid between an edge (k, 3) and the centreplane straight inboard of it, (k, 2, 3)."""
+def _flat_face(edge: Array, axis_height: Array, resolution: Resolution) -> Array:
+    """Grid between an edge (k, 3) and the centreplane straight inboard of it, (k, n, 3)."""
     inner = edge.copy()
     inner[:, 1] = 0.0
     inner[:, 2] = axis_height
-    return np.stack([edge, inner], axis=1)
+    cells = _COUNTS[resolution][4]
+    part = np.linspace(0.0, 1.0, cells + 1)[:, None]
+    return np.asarray(np.where(part < 1.0, edge[:, None] + part * (inner - edge)[:, None], inner[:, None]))
 
 
 def _pieces(parent: ParentHull, resolution: Resolution) -> list[_Piece]:
@@ -109,15 +117,16 @@ def _pieces(parent: ParentHull, resolution: Resolution) -> list[_Piece]:
         grid[..., 1] = np.where(np.abs(grid[..., 1]) < _CENTREPLANE * parent.length, 0.0, np.maximum(grid[..., 1], 0.0))
         points[name] = grid
         # u forward, v up on the port side: r_u x r_v points to port is (x) x (z) = -y: turned round.
-        pieces.append(_Piece(grid, False, name in parent.underwater, False))
+        pieces.append(_Piece(grid, False, name in parent.underwater))
     for name, end in parent.caps:
         edge = points[name][0 if end == "first" else -1]
-        face = _flat_face(edge, edge[:, 2])
+        face = _flat_face(edge, edge[:, 2], resolution)
         # Along the edge upwards, then inboard: z x (-y) = +x; an aft-facing cap is turned round.
-        pieces.append(_Piece(face, end == "last", name in parent.underwater, True))
+        region = "hull" if name == "skeg" else "transom"
+        pieces.append(_Piece(face, end == "last", name in parent.underwater, region, True))
     for name in parent.topsides:
         edge = points[name][:, -1]
-        pieces.append(_Piece(_flat_face(edge, edge[:, 2]), False, False, True))
+        pieces.append(_Piece(_flat_face(edge, edge[:, 2], resolution), False, False, "deck", True))
     return pieces
 
 
@@ -128,7 +137,7 @@ def _lid(parent: ParentHull, resolution: Resolution) -> list[_Piece]:
         edge = parent.surface(name).evaluate(u, np.array([1.0]))[:, 0]
         if name in parent.underwater and np.all(np.abs(edge[:, 2] - parent.draft) < 1e-6 * parent.draft):
             edge[:, 1] = np.where(np.abs(edge[:, 1]) < _CENTREPLANE * parent.length, 0.0, np.maximum(edge[:, 1], 0.0))
-            lids.append(_Piece(_flat_face(edge, edge[:, 2]), False, True, True))
+            lids.append(_Piece(_flat_face(edge, edge[:, 2], resolution), False, True, "deck", True))
     return lids
 
 
@@ -141,7 +150,7 @@ def _triangles(rows: int, columns: int, outward: bool) -> IntArray:
 
 def _assembled(pieces: list[_Piece], length: float, merge_hard_edges: bool) -> HullTopology:
     """Both sides of the pieces as one mesh; hard edges keep their own vertices unless merged."""
-    vertices, faces, flags, groups = [], [], [], []
+    vertices, faces, flags, regions, groups = [], [], [], [], []
     first = 0
     for index, piece in enumerate(pieces):
         flat = piece.points.reshape(-1, 3)
@@ -151,6 +160,7 @@ def _assembled(pieces: list[_Piece], length: float, merge_hard_edges: bool) -> H
             vertices.append(flat * np.array([1.0, side, 1.0]))
             faces.append((local if side > 0.0 else local[:, ::-1]) + first)
             flags.append(np.full(len(local), piece.underwater))
+            regions.append(np.full(len(local), REGIONS.index(piece.region)))
             groups.append(np.full(len(flat), group))
             first += len(flat)
     points, group_of = np.concatenate(vertices), np.concatenate(groups)
@@ -163,13 +173,13 @@ def _assembled(pieces: list[_Piece], length: float, merge_hard_edges: bool) -> H
     proper = np.all(triangles != np.roll(triangles, 1, axis=1), axis=1)
     # A face within the centreplane is there twice, back to back, and encloses nothing.
     proper &= np.any(corners[triangles, 1] != 0.0, axis=1)
-    triangles, below = triangles[proper], np.concatenate(flags)[proper]
+    triangles, below, region = triangles[proper], np.concatenate(flags)[proper], np.concatenate(regions)[proper]
     parts: dict[str, tuple[IntArray, IntArray]] = {}
     for name, chosen in (("underwater", below), ("topsides", ~below)):
         if np.any(chosen):
             used, local = np.unique(triangles[chosen], return_inverse=True)
             parts[name] = (used, np.asarray(local.reshape(-1, 3), dtype=np.int64))
-    return HullTopology(corners, triangles, below, parts)
+    return HullTopology(corners, triangles, below, region, parts)
 
 
 def _merged(count: int, pairs: IntArray) -> IntArray:
@@ -209,11 +219,13 @@ def _placed(hull: Hull, vertices: Array) -> Array:
 def hull_mesh(hull: Hull, resolution: Resolution = "view") -> trimesh.Trimesh:
     """The whole hull to the deck: one closed mesh, outward normals, m, ship axes.
 
-    ``mesh.face_attributes["underwater"]`` tells the faces below the design waterline.
+    ``mesh.face_attributes`` tells with "underwater" the faces below the design waterline, with "region" the place of
+    each in ``REGIONS``.
     """
     topology = _topology(hull.parent, resolution, "closed")
     mesh = trimesh.Trimesh(_placed(hull, topology.vertices), topology.faces, process=False)
     mesh.face_attributes["underwater"] = topology.underwater
+    mesh.face_attributes["region"] = topology.regions
     return mesh
 
 

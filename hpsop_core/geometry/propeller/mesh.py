@@ -38,7 +38,7 @@ class _Counts:
 _COUNTS: dict[str, _Counts] = {
     "drag": _Counts(14, 12, 3, 8, 3, 6),
     "view": _Counts(24, 24, 4, 12, 4, 10),
-    "export": _Counts(60, 60, 8, 24, 6, 20),
+    "export": _Counts(48, 72, 5, 24, 6, 20),
 }
 
 
