@@ -308,6 +308,15 @@ class OptimizationSection:
     stagnation_tolerance: float = number(
         0.0, 0.0, 1.0, "relative growth of the hypervolume over the window below which level 2 begins; 0: never"
     )
+    surface: bool = flag(
+        False,
+        "level 2 answers from a surface learnt from solved designs, where it is not in doubt; the last front is solved",
+    )
+    surface_sample: int = integer(
+        30, 0, 1000, "designs spread over the space that are solved for the surface when level 2 begins"
+    )
+    surface_checks: int = integer(12, 1, 1000, "designs of the front that are solved before the surface is learnt anew")
+    surface_generations: int = integer(12, 2, 100000, "generations of level 2 after which the surface is learnt anew")
     evaluation_time_limit: float = number(120.0, 0.1, 1e5, "an evaluation that takes longer is recorded as failed", "s")
 
     def __post_init__(self) -> None:

@@ -14,6 +14,7 @@ from hpsop_core.cli.arguments import add_json, print_json, print_table
 from hpsop_core.cli.driving import INTERRUPTED, Progress, driven, duration
 from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController, front_designs
+from hpsop_core.runs.learning import surface_words
 from hpsop_core.runs.reader import RunReader, open_run
 from hpsop_core.runs.records import DesignRecord, front_families, identifier
 
@@ -196,6 +197,8 @@ def _summary_lines(run: RunReader) -> list[str]:
             f"{numbers['count']} evaluations ({numbers['feasible']} feasible, {numbers['failed']} failed), "
             f"{1e3 * numbers['processor_seconds'] / max(1, numbers['count']):.1f} ms each"
         )
+    if "surface" in summary:
+        lines.append(surface_words(summary))
     if "hypervolume" in summary:
         spread = summary["spread"]
         lines.append(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 from dataclasses import dataclass
 
 import numpy as np
@@ -9,6 +10,7 @@ import numpy as np
 from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import DesignNumbers, HullResult, PropellerResult
 from hpsop_core.case.variables import DesignVariables
+from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation.condition import condition_result
 from hpsop_core.evaluation.hull_answer import build_hull, hull_variables, resistance_point, wave_answers
 from hpsop_core.evaluation.hull_propulsion import (
@@ -21,10 +23,16 @@ from hpsop_core.evaluation.hull_propulsion import (
     unused_statements,
     uses_holtrop,
 )
-from hpsop_core.evaluation.levels import TRUTH, Level, level_of
-from hpsop_core.evaluation.propeller_answer import build_propeller, propeller_answer, propeller_variables
+from hpsop_core.evaluation.levels import TRUTH, Level, WaveAnswer, level_of
+from hpsop_core.evaluation.propeller_answer import (
+    PropellerAnswer,
+    build_propeller,
+    propeller_answer,
+    propeller_variables,
+)
 from hpsop_core.evaluation.shapes import initial_volume
 from hpsop_core.evaluation.ship import Loading, loading
+from hpsop_core.evaluation.surface import Surface
 from hpsop_core.geometry.clearance import baseline_clearance, propeller_clearance
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.hydro.holtrop import HoltropHull
@@ -116,30 +124,62 @@ class Physics:
         numbers: of hull, propeller and conditions.
         curve: the propeller's open-water curve.
         warnings: of the form and of the solvers.
+        predicted: a learnt surface spoke for the solvers.
     """
 
     numbers: DesignNumbers
     curve: PropellerCurve
     warnings: tuple[str, ...]
+    predicted: bool = False
 
 
-def compute(case: Case, variables: DesignVariables, level: int, basis: Basis) -> Physics:
+def compute(
+    case: Case, variables: DesignVariables, level: int, basis: Basis, surface: Surface | None = None
+) -> Physics:
     """A design's physics at a level.
+
+    Args:
+        case, variables, level: what is asked.
+        basis: the case's at this level.
+        surface: asked before the solvers; they decide where it is in doubt, and where it says that the design fails.
 
     Raises:
         SolverFailure: the form, the propeller or a solver's answer is not to be had.
     """
-    constants = case.constants
     hull_key = hull_variables(case.hull, variables, basis.displaced_volume)
     hull = build_hull(hull_key)
     if case.conditions.speed == "fixed":
-        froude_numbers = tuple(speed / (constants.gravity * hull.length) ** 0.5 for speed in basis.speeds)
+        froude_numbers = tuple(speed / (case.constants.gravity * hull.length) ** 0.5 for speed in basis.speeds)
     else:
         froude_numbers = basis.froude_numbers
     propeller_key = propeller_variables(case.propeller, variables)
-    propeller = build_propeller(propeller_key)
-    answer = propeller_answer(propeller_key, level, constants.propeller_roughness)
+    told = None if surface is None else surface.answers(hull, variables, froude_numbers, propeller_key)
+    if told is not None:
+        waves, answer = told
+        if case.constraints.back_cavitation_limit is not None:
+            # Pressures on the blades are never predicted.
+            answer = propeller_answer(propeller_key, level, case.constants.propeller_roughness)
+        with contextlib.suppress(SolverFailure):
+            return _assembled(case, variables, level, basis, froude_numbers, hull, waves, answer, predicted=True)
+    answer = propeller_answer(propeller_key, level, case.constants.propeller_roughness)
     waves = wave_answers(hull_key, level, froude_numbers)
+    return _assembled(case, variables, level, basis, froude_numbers, hull, waves, answer)
+
+
+def _assembled(
+    case: Case,
+    variables: DesignVariables,
+    level: int,
+    basis: Basis,
+    froude_numbers: tuple[float, ...],
+    hull: Hull,
+    waves: tuple[WaveAnswer, ...],
+    answer: PropellerAnswer,
+    predicted: bool = False,
+) -> Physics:
+    """What follows from the answers about waves and propeller."""
+    constants = case.constants
+    propeller = build_propeller(propeller_variables(case.propeller, variables))
     volume = _counted_volume(case, variables, hull, basis.displaced_volume)
     if case.hull.form == "affine":
         block_coefficient = volume / (hull.length * hull.breadth * hull.draft)
@@ -196,7 +236,7 @@ def compute(case: Case, variables: DesignVariables, level: int, basis: Basis) ->
     )
     # A solver tells everything of one call with each of its answers.
     warnings = dict.fromkeys(line for wave in waves for line in wave.warnings)
-    return Physics(numbers, answer.curve, (*hull.warnings, *warnings, *cautions))
+    return Physics(numbers, answer.curve, (*hull.warnings, *warnings, *cautions), predicted)
 
 
 def _hull_result(hull: Hull, loaded: Loading, booked: tuple[float, float] | None) -> HullResult:

@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-from dataclasses import asdict, dataclass, fields
+from collections.abc import Mapping, Sequence
+from dataclasses import asdict, dataclass, fields, replace
 from typing import Any
 
 from hpsop_core.case.case import Case
@@ -12,6 +12,7 @@ from hpsop_core.evaluation.hull_propulsion import HoltropNumbers
 from hpsop_core.evaluation.physics import Basis, basis_for, compute
 from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.evaluation.ship import check_engine, check_loading
+from hpsop_core.evaluation.surface import Surface, learn
 from hpsop_core.one_thread import one_blas_thread
 
 
@@ -23,11 +24,13 @@ class Reference:
         level: 1 or 2.
         basis: what every design's physics takes from the initial design.
         initial: the initial design's numbers.
+        surface: what has been learnt, to be asked before the solvers; never part of ``as_dict``.
     """
 
     level: int
     basis: Basis
     initial: InitialNumbers
+    surface: Surface | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """For the run file."""
@@ -80,6 +83,22 @@ def reference_for(case: Case, level: int) -> Reference:
     numbers = compute(case, case.initial.variables, level, basis).numbers
     check_engine(case, numbers)
     return Reference(level, basis, _initial_numbers(basis.displaced_volume, numbers))
+
+
+def learnt(
+    case: Case, reference: Reference, evaluations: Sequence[Mapping[str, Any]]
+) -> tuple[Reference, Mapping[str, float]]:
+    """The reference with a surface learnt from solved designs, and the surface's error; without where they are too few.
+
+    Args:
+        case: what is optimised.
+        reference: of the true level.
+        evaluations: as ``surface.learn`` takes them.
+    """
+    surface = learn(case, evaluations)
+    if surface is None:
+        return replace(reference, surface=None), {}
+    return replace(reference, surface=surface), asdict(surface.held_out)
 
 
 def _initial_numbers(volume: float, design: DesignNumbers) -> InitialNumbers:

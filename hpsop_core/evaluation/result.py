@@ -46,6 +46,7 @@ class Ok:
         attained_eedi_g_per_tonne_mile: grams of CO2 per tonne and nautical mile; None where it is not known.
         errors: half width of the 90 % interval by the name of a quantity, where it is known.
         elapsed: wall time in s; the only field that differs from run to run.
+        predicted: waves and open-water curve are a learnt surface's (``evaluation.surface``), not the solvers'.
     """
 
     ok: ClassVar[Literal[True]] = True
@@ -71,6 +72,7 @@ class Ok:
     attained_eedi_g_per_tonne_mile: float | None = None
     errors: Mapping[str, float] = field(default_factory=dict)
     elapsed: float = 0.0
+    predicted: bool = False
 
     def as_dict(self) -> dict[str, Any]:
         """The JSON document of ``hpsop evaluate --json``."""
@@ -97,6 +99,7 @@ class Ok:
             "errors": dict(self.errors),
             "elapsed": self.elapsed,
             "stage": self.stage,
+            "predicted": self.predicted,
         }
 
 
@@ -123,6 +126,7 @@ class Failed:
     feasible: ClassVar[bool] = False
     conditions: ClassVar[tuple[ConditionResult, ...]] = ()
     warnings: ClassVar[tuple[str, ...]] = ()
+    predicted: ClassVar[bool] = False
     objectives: ClassVar[Mapping[str, float | None]] = {"f1": None, "f2": None}
     all_objectives: ClassVar[Mapping[str, float]] = {}
     constraints: ClassVar[Mapping[str, float | None]] = {constraint.name: None for constraint in CONSTRAINTS}
@@ -161,6 +165,7 @@ class Failed:
             "errors": {},
             "elapsed": self.elapsed,
             "stage": self.stage,
+            "predicted": self.predicted,
         }
 
 
@@ -191,6 +196,7 @@ def evaluation_from_dict(data: Mapping[str, Any]) -> Evaluation:
         **{name: data.get(name) for name in _PROFILE},
         errors=data.get("errors", {}),
         elapsed=data.get("elapsed", 0.0),
+        predicted=data.get("predicted", False),
     )
 
 

@@ -30,12 +30,14 @@ class Candidate:
     Attributes:
         level: fidelity level, 1 or 2.
         variables: the decoded design.
-        origin: "initial", "sample", "seed", "offspring", "handover" or "reseed".
+        origin: "initial", "sample", "seed", "offspring", "handover", "reseed" or "renewal".
+        surface: 0: to be solved; n: the nth learnt surface may answer for the solvers, where it is not in doubt.
     """
 
     level: int
     variables: DesignVariables
     origin: str
+    surface: int = 0
 
     @property
     def key(self) -> tuple[float, ...]:
@@ -53,6 +55,7 @@ class Outcome:
         violations: max(0, g) for each constraint that applies, and for infeasibility outside them.
         feasible: every g <= ``FEASIBILITY_TOLERANCE`` and nothing else against the design.
         cavitation: g3 with its sign, None where it is not applied.
+        predicted: a learnt surface's answer, not the solvers'.
     """
 
     evaluation_id: int
@@ -60,6 +63,7 @@ class Outcome:
     violations: tuple[float, ...]
     feasible: bool
     cavitation: float | None = None
+    predicted: bool = False
 
     @property
     def failed(self) -> bool:
@@ -81,7 +85,8 @@ class Outcome:
         violations = tuple(max(0.0, float(g)) for g in constraints)
         if within and not feasible:
             violations = (*violations, UNNAMED_VIOLATION)
-        return cls(evaluation_id, (float(f1), float(f2)), violations, feasible, data["constraints"].get("cavitation"))
+        cavitation, predicted = data["constraints"].get("cavitation"), bool(data.get("predicted"))
+        return cls(evaluation_id, (float(f1), float(f2)), violations, feasible, cavitation, predicted)
 
     def violation(self, cavitation_margin: float) -> float:
         """Sum of the violations when Keller's criterion must be kept by a margin, in expanded area ratio."""

@@ -6,7 +6,8 @@ The plan of a run of N generations, n of them at level 1:
 * Level 1 goes on to generation n, or until its hypervolume has grown by less than a stated share over a window of
   generations. Then level 1's last population is the first one of level 2, where it is evaluated anew: that is a
   generation too. A stated share of it is replaced by a fresh Latin hypercube, and the initial design is kept in it.
-* Level 2 has all the rest: N stays what was asked, also when level 1 stagnated early.
+* Level 2 has all the rest: N stays what was asked, also when level 1 stagnated early. With ``optimization.surface`` it
+  asks a learnt surface first: see ``surface_plan``.
 
 Everything is a function of the settings, the seed and the answers told: to resume a run is to ask and answer again.
 """
@@ -27,6 +28,7 @@ from hpsop_core.optimization.indicators import FrontArchive, feasible_share, hyp
 from hpsop_core.optimization.nsga2 import Nsga2, Operators
 from hpsop_core.optimization.problem import Candidate, Outcome, algorithm_view
 from hpsop_core.optimization.sampling import derived_seed, latin_hypercube
+from hpsop_core.optimization.surface_plan import SurfacePlan, front_to_check, spread_out
 from hpsop_core.typing_aliases import Array
 
 _SAMPLE, _SEARCH = 0, 1  # purposes of derived seeds
@@ -69,6 +71,12 @@ class TwoLevelSearch:
         self._archive_hypervolumes: list[float] = []
         self._asked: tuple[Candidate, ...] = ()
         self._last_members: tuple[int, ...] = ()
+        self._last_front: tuple[int, ...] = ()
+        self._plan = SurfacePlan(settings)
+        self._level2_told = 0
+        self._renewals = 0
+        self._renew = False
+        self._solving = False
         self._exhausted = False
 
     @property
@@ -108,28 +116,76 @@ class TwoLevelSearch:
             self._level1_generations = generations
         self._generations = generations
 
+    def close(self, generation: int) -> None:
+        """With a surface: solve this generation of level 2 as a whole, because it is the last one that is asked for.
+
+        To be said again, with the same numbers, when a run is asked anew that went on after such a generation.
+        """
+        self._plan.close(generation)
+
     def ask(self) -> tuple[Candidate, ...]:
         """The designs of the next generation, in order; empty when the search is finished. Repeatable until told."""
         if self._asked or self.finished:
             return self._asked
+        solved = self._to_be_solved()
+        named: dict[DesignVariables, str] = {}
         if self._algorithm is None:
-            vectors, origins = self._first_population() if self._number == 0 else self._handed_over()
-            seed = derived_seed(self._settings.seed, self._level.number, _SEARCH)
+            if self._number == 0:
+                vectors, origins = self._first_population()
+            else:
+                vectors, origins = self._renewed() if self._renewals else self._handed_over()
+            purpose = (_SEARCH, self._renewals) if self._renewals else (_SEARCH,)
+            seed = derived_seed(self._settings.seed, self._level.number, *purpose)
             self._algorithm = Nsga2(self._space, self._operators, vectors, seed)
             named = {self._space.decode(vector): origin for vector, origin in zip(vectors, origins, strict=True)}
-        else:
-            named = {}
         asked = self._algorithm.ask()
         if asked is None:
             return self._nothing_new()
         designs = [self._space.decode(vector) for vector in asked]
-        self._asked = tuple(Candidate(self._level.number, design, named.get(design, "offspring")) for design in designs)
+        self._asked = tuple(
+            Candidate(
+                self._level.number,
+                design,
+                named.get(design, "offspring"),
+                0 if solved is None or design in solved else self._plan.surface,
+            )
+            for design in designs
+        )
         return self._asked
+
+    def _to_be_solved(self) -> frozenset[DesignVariables] | None:
+        """Designs of the next generation that are solved, where others are a surface's; None: all of them.
+
+        Where the population is asked again it begins a new search.
+        """
+        plan = self._plan
+        self._solving = True
+        if self._level is not TRUTH or not self._settings.surface or self._level2_told == 0:
+            return None
+        closes = plan.closes(self._number + 1)
+        doubted = not closes and plan.doubted
+        checks = not closes and not doubted and plan.checks
+        if closes or checks or doubted or self._renew:
+            self._algorithm = None
+            self._renewals += 1
+        self._renew = self._solving = closes or checks
+        if closes:
+            return None
+        if checks:
+            chosen = front_to_check(self._last_front, self._outcomes, self._settings.surface_checks)
+            return frozenset(self._variables[number] for number in chosen)
+        if plan.learns:
+            plan.next_surface()
+        return frozenset()
 
     def _nothing_new(self) -> tuple[Candidate, ...]:
         # A space with few integer designs can be used up. Level 1 then hands over, level 2 ends.
         if self._level2_comes:
             self._begin_level2()
+            return self.ask()
+        if self._level is TRUTH and self._settings.surface and not self._plan.closes(self._number):
+            # What is shown at the end is solved, also where the end comes early.
+            self._plan.close(self._number + 1)
             return self.ask()
         self._exhausted = True
         return ()
@@ -146,6 +202,7 @@ class TwoLevelSearch:
         if not self._asked or self._algorithm is None or len(outcomes) != len(self._asked):
             raise ValueError("tell must answer the last ask, design for design")
         settings = self._settings
+        doubts = sum(not outcome.predicted and outcome.evaluation_id not in self._outcomes for outcome in outcomes)
         for candidate, outcome in zip(self._asked, outcomes, strict=True):
             self._outcomes[outcome.evaluation_id] = outcome
             self._variables[outcome.evaluation_id] = candidate.variables
@@ -157,11 +214,18 @@ class TwoLevelSearch:
         self._archive_hypervolumes.append(hypervolume(self._archive.objectives))
         self._number += 1
         self._asked = ()
+        if self._level is TRUTH:
+            self._level2_told += 1
+            if self._solving:
+                self._plan.solved()
+            else:
+                self._plan.told(doubts)
         members = self._algorithm.population
         self._last_members = members
         survivors = [self._outcomes[member] for member in members]
         front = FrontArchive()
         front.add(survivors)
+        self._last_front = front.ids
         chosen, bend = compromise(front.objectives), knee(front.objectives)
         generation = Generation(
             number=self._number,
@@ -221,7 +285,9 @@ class TwoLevelSearch:
         for seed in self._seeds:
             if len(placed) < population:
                 placed.setdefault(seed, "seed")
-        return self._filled(placed, population, "sample")
+        # Without level 1 nobody knows what is feasible: the surface's sample is more of the same.
+        more = self._settings.surface_sample if self._level is TRUTH and self._settings.surface else 0
+        return self._filled(placed, population + more, "sample")
 
     def _handed_over(self) -> tuple[Array, list[str]]:
         population = self._settings.population
@@ -230,7 +296,23 @@ class TwoLevelSearch:
         # Without re-seeding the last generation of level 1 goes over as it is: the paper's hand-over.
         if self._settings.keep_initial and fresh > 0 and self._initial not in kept:
             kept = [*kept[: max(0, population - fresh - 1)], self._initial]
-        return self._filled(dict.fromkeys(kept[:population], "handover"), population, "reseed")
+        vectors, origins = self._filled(dict.fromkeys(kept[:population], "handover"), population, "reseed")
+        if self._settings.surface:
+            sample = self._feasible_sample(vectors)
+            vectors, origins = np.vstack((vectors, sample)), [*origins, *(["sample"] * len(sample))]
+        return vectors, origins
+
+    def _feasible_sample(self, placed: Array) -> Array:
+        """Designs that level 1 found feasible, far from each other and from those placed, to learn from."""
+        feasible = [self._variables[number] for number, outcome in self._outcomes.items() if outcome.feasible]
+        vectors = np.array([self._space.encode(design) for design in feasible]).reshape(-1, len(self._space.free))
+        extent = self._space.relaxed_upper - self._space.relaxed_lower
+        return np.asarray(vectors[spread_out(vectors / extent, placed / extent, self._settings.surface_sample)])
+
+    def _renewed(self) -> tuple[Array, list[str]]:
+        """The population as it is, to be asked again."""
+        designs = [self._variables[member] for member in self._last_members]
+        return np.array([self._space.encode(design) for design in designs]), ["renewal"] * len(designs)
 
     def _filled(self, placed: dict[DesignVariables, str], population: int, origin: str) -> tuple[Array, list[str]]:
         # Only a re-seeded hand-over or a first sample has room; level 1 may also have ended on a small population.

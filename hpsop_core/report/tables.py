@@ -31,6 +31,7 @@ from hpsop_core.quantities import (
     variable_quantities,
 )
 from hpsop_core.report.html_page import Words, facts, paragraph, table, unit_html
+from hpsop_core.runs.learning import surface_words
 from hpsop_core.runs.records import DesignRecord, Failure, front_families
 from hpsop_core.typing_aliases import Array
 
@@ -215,6 +216,8 @@ def run_facts(summary: Mapping[str, Any], failed: int) -> Markup:
         ("designs made by hand", str(summary["designs_by_hand"])),
         ("versions", versions),
     ]
+    if "surface" in summary:
+        pairs.append(("learnt surface", surface_words(summary)))
     if journal:
         pairs.append(("journal", joined(journal[-6:], "<br>")))
     header = ["level", "generations", "evaluations", "feasible", "failed", "wall time", "seconds each"]

@@ -13,7 +13,7 @@ from typing import Any
 from hpsop_core.runs.checksums import DamagedRunError, Tally, checked, checksum
 from hpsop_core.runs.packing import unpack
 from hpsop_core.runs.records import check_agreement
-from hpsop_core.runs.schema import CHECKSUMS_SINCE, COLUMNS, RUN_KEYS
+from hpsop_core.runs.schema import CHECKSUMS_SINCE, COLUMNS, RUN_KEYS, cells
 from hpsop_core.runs.ship import LARGEST_FILE, ShipFile
 
 
@@ -29,6 +29,7 @@ class RunContent:
     def __init__(self, connection: sqlite3.Connection, path: Path, version: int) -> None:
         self._connection = connection
         self._path = path
+        self._version = version
         self._sealed = version >= CHECKSUMS_SINCE
 
     def values(self) -> dict[str, str]:
@@ -54,7 +55,7 @@ class RunContent:
         Raises:
             DamagedRunError: a record is not what was written.
         """
-        names = ",".join((*COLUMNS[table], "checksum" if self._sealed else "NULL"))
+        names = f"{cells(table, self._version)},{'checksum' if self._sealed else 'NULL'}"
         for row in self._connection.execute(f"SELECT {names} FROM {table} {condition}", arguments):
             yield checked(self._path, table, row)
 

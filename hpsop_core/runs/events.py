@@ -25,6 +25,7 @@ class RunSnapshot:
         population: designs asked for in the generation under way.
         done: of these, evaluated.
         evaluations: finished in the whole run, per level.
+        predictions: of these, predicted by a learnt surface.
         failures: of these, failed.
         hypervolume: of the last generation.
         feasible_share: of the last generation.
@@ -41,6 +42,7 @@ class RunSnapshot:
     population: int = 0
     done: int = 0
     evaluations: tuple[int, int] = (0, 0)
+    predictions: int = 0
     failures: int = 0
     hypervolume: float = 0.0
     feasible_share: float = 0.0

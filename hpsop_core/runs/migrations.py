@@ -11,7 +11,7 @@ from typing import Any
 from hpsop_core.runs.checksums import Tally, checksum, damage_told
 from hpsop_core.runs.packing import unpack
 from hpsop_core.runs.records import check_agreement
-from hpsop_core.runs.schema import COLUMNS, create_tables
+from hpsop_core.runs.schema import COLUMNS, OLDEST_SCHEMA, cells, create_tables
 
 
 def lift(connection: sqlite3.Connection, path: Path) -> None:
@@ -54,7 +54,7 @@ def lift(connection: sqlite3.Connection, path: Path) -> None:
 
 def _check(connection: sqlite3.Connection, path: Path) -> None:
     dictionary = b""
-    for row in connection.execute(f"SELECT {','.join(COLUMNS['evaluations'])} FROM evaluations"):
+    for row in connection.execute(f"SELECT {cells('evaluations', OLDEST_SCHEMA)} FROM evaluations"):
         record: dict[str, Any] = dict(zip(COLUMNS["evaluations"], row, strict=True))
         if not dictionary:
             found = connection.execute("SELECT value FROM run WHERE key = 'dictionary'").fetchone()
@@ -67,7 +67,7 @@ def _check(connection: sqlite3.Connection, path: Path) -> None:
 def _copy(connection: sqlite3.Connection, table: str, tally: Tally) -> None:
     columns = COLUMNS[table]
     marks = ",".join("?" * (len(columns) + 1))
-    rows = connection.execute(f"SELECT {','.join(columns)} FROM old_{table}")
+    rows = connection.execute(f"SELECT {cells(table, OLDEST_SCHEMA)} FROM old_{table}")
     while block := rows.fetchmany(500):
         for row in block:
             value = checksum(table, row)

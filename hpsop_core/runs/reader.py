@@ -14,7 +14,7 @@ from typing import Any
 from hpsop_core.case.case import Case, case_from_toml
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
-from hpsop_core.evaluation.levels import FAST
+from hpsop_core.evaluation.levels import FAST, TRUTH
 from hpsop_core.evaluation.result import Evaluation, evaluation_from_dict
 from hpsop_core.optimization.decision import compromise
 from hpsop_core.optimization.generation import Generation
@@ -204,6 +204,7 @@ class RunReader:
             "evaluations": {
                 str(level): {
                     "count": len(at_level),
+                    "predicted": sum(row["surface"] > 0 for row in at_level),
                     "failed": sum(row["status"] != "ok" for row in at_level),
                     "feasible": sum(row["feasible"] for row in at_level),
                     "processor_seconds": sum(row["elapsed"] for row in at_level),
@@ -227,6 +228,8 @@ class RunReader:
                 for row in journal
             ],
         }
+        if settings.surface:
+            result["surface"] = _surface_summary(values, searched)
         if last is not None:
             result["hypervolume"] = last.hypervolume
             result["spread"] = last.spread
@@ -427,6 +430,30 @@ class RunReader:
                 known: json.loads(text) for known, text in content.all_rows("reference")
             }
         return found.get(level)
+
+
+def _surface_summary(values: Mapping[str, str], searched: Sequence[Mapping[str, Any]]) -> dict[str, Any]:
+    """The learnt surfaces of a run: their own errors, and how far designs that were solved in the end lay from the
+    last prediction of each."""
+    predicted = {row["variables"]: row for row in sorted(searched, key=lambda row: row["id"]) if row["surface"]}
+    pairs = [
+        (predicted[row["variables"]], row)
+        for row in searched
+        if row["level"] == TRUTH.number
+        and not row["surface"]
+        and row["status"] == "ok"
+        and row["variables"] in predicted
+    ]
+    pairs = [(guess, solved) for guess, solved in pairs if guess["id"] < solved["id"]]
+    differences = {
+        name: max((abs(guess[column] / solved[column] - 1.0) for guess, solved in pairs), default=None)
+        for name, column in (("f1", "first_objective"), ("f2", "second_objective"))
+    }
+    return {
+        "surfaces": json.loads(values.get("surfaces", "{}")),
+        "solved_after_prediction": len(pairs),
+        "greatest_difference": differences,
+    }
 
 
 def _record(table: str, row: Sequence[Any]) -> dict[str, Any]:

@@ -28,7 +28,7 @@ class DesignRecord:
 
     Attributes:
         id: its number in the run.
-        origin: "initial", "sample", "seed", "offspring", "handover", "reseed" or "hand".
+        origin: "initial", "sample", "seed", "offspring", "handover", "reseed", "renewal" or "hand".
         generation: that asked for it first; 0 for the initial design, and for designs made by hand.
         evaluation: everything about it.
     """
@@ -46,6 +46,7 @@ class DesignRecord:
             "variables": self.evaluation.variables.as_dict(),
             "feasible": self.evaluation.feasible,
             "errors": dict(self.evaluation.errors),
+            "predicted": self.evaluation.predicted,
         }
 
     def as_dict(self) -> dict[str, Any]:
@@ -165,12 +166,13 @@ def generations_asked(values: Mapping[str, str]) -> int:
     return min(asked, MOST_GENERATIONS)
 
 
-def fingerprint(level: int, variables: str) -> int:
+def fingerprint(level: int, variables: str, surface: int = 0) -> int:
     """64 bits that name an evaluation of the search: an index over them costs a tenth of one over the text.
 
     Two designs of a million share one with a probability of 3e-8; the second would then be refused, never mistaken.
     """
-    digest = hashlib.sha256(f"{level} {variables}".encode()).digest()
+    asked = f"{level} {variables} {surface}" if surface else f"{level} {variables}"
+    digest = hashlib.sha256(asked.encode()).digest()
     return int.from_bytes(digest[:8], "big", signed=True)
 
 
@@ -194,10 +196,12 @@ def check_agreement(path: Path, record: Mapping[str, Any], document: Mapping[str
         document["objectives"]["f1"],
         document["objectives"]["f2"],
         document["elapsed"],
-        fingerprint(record["level"], record["variables"]),
+        bool(document.get("predicted")),
+        fingerprint(record["level"], record["variables"], record["surface"]),
     )
     names = ("level", "status", "stage", "reason", "feasible", "first_objective", "second_objective", "elapsed")
-    stands = tuple(bool(record[name]) if name == "feasible" else record[name] for name in (*names, "fingerprint"))
+    flags = ("feasible", "surface")
+    stands = tuple(bool(record[name]) if name in flags else record[name] for name in (*names, "surface", "fingerprint"))
     if said != stands:
         raise DamagedRunError(path, f"design {record['id']} contradicts itself")
 

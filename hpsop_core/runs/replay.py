@@ -22,8 +22,10 @@ from hpsop_core.optimization.two_level import TwoLevelSearch
 from hpsop_core.runs.batch import BatchEvaluator, reconnect
 from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.events import RunEvent, RunSnapshot, State
+from hpsop_core.runs.learning import Learning
+from hpsop_core.runs.ledger import DivergedError, Ledger
 from hpsop_core.runs.records import variables_text
-from hpsop_core.runs.schema import FIRST_SEARCH_ID, initial_id, software_versions
+from hpsop_core.runs.schema import initial_id, software_versions
 from hpsop_core.runs.store import RunStore, StoreUnwritableError
 from hpsop_core.runs.tasks import Physics, failure_text, reference_task
 from hpsop_core.runs.workers import Workers, WorkersLostError, WorkersUnavailableError
@@ -67,9 +69,8 @@ class RunDriver:
         self._workers: Workers | None = None
         self._control = control
         self._emit = emit
-        self._known: dict[tuple[int, str], Outcome] = {}
-        self._numbered: dict[tuple[int, str], int] = {}
-        self._next_number = FIRST_SEARCH_ID
+        self._ledger = Ledger(variables_text(self._case.initial.variables), store.outcomes())
+        self._learning = Learning(store, self._case, physics, self._ledger)
         self._references: dict[int, Any] = {}
         self._noted: set[str] = set()
         self._last_event = 0.0
@@ -126,14 +127,16 @@ class RunDriver:
         store, settings = self._store, self._case.optimization
         search = TwoLevelSearch(self._case.bounds, settings, self._case.initial.variables, store.seeds)
         search.extend(max(settings.generations, store.generations))
-        self._known = store.outcomes()
+        for number in json.loads(store.value("closings", "[]")):
+            search.close(number)
         times = store.generation_times()
         self.snapshot = dataclasses.replace(
             self.snapshot,
             generations=search.generations,
             level=search.level,
-            evaluations=(self._count(FAST.number), self._count(TRUTH.number)),
-            failures=sum(outcome.failed for outcome in self._known.values()),
+            evaluations=self._ledger.counts(),
+            predictions=self._ledger.predictions,
+            failures=self._ledger.failures,
             elapsed=sum(elapsed for _, elapsed in times),
         )
         self._keep(lambda: store.set_values(state="running", reason=""))
@@ -145,6 +148,7 @@ class RunDriver:
             self._extend(search)
             if self._control.stopped and not self._is_known(search):
                 raise _StoppedError
+            self._close_last(search)
             candidates = search.ask()
             if not candidates:
                 break
@@ -158,8 +162,15 @@ class RunDriver:
         # A stop during the replay waits for its end: that takes seconds, and the snapshot is then worth something.
         return self._store.generation(search.number + 1) is not None
 
-    def _count(self, level: int) -> int:
-        return sum(1 for known_level, _ in self._known if known_level == level)
+    def _close_last(self, search: TwoLevelSearch) -> None:
+        """With a surface the last generation is solved; the file keeps which one that was, should the run go on."""
+        last = search.number + 1
+        if not self._case.optimization.surface or last != search.generations:
+            return
+        closings = json.loads(self._store.value("closings", "[]"))
+        if last not in closings:
+            self._keep(lambda: self._store.set_values(closings=json.dumps([*closings, last])))
+        search.close(last)
 
     def _extend(self, search: TwoLevelSearch) -> None:
         extension = self._control.take_extension()
@@ -174,11 +185,15 @@ class RunDriver:
     ) -> None:
         started = time.monotonic()
         number = search.number + 1
-        keys = [(candidate.level, variables_text(candidate.variables)) for candidate in candidates]
+        for surface in {candidate.surface for candidate in candidates} - {0}:
+            self._learning.announce(surface)
+        numbers: list[int] = []
         missing: list[tuple[int, Candidate]] = []
-        for key, candidate in zip(keys, candidates, strict=True):
-            if self._number(key) and key not in self._known:
-                missing.append((self._numbered[key], candidate))
+        for candidate in candidates:
+            place, is_new = self._number(candidate)
+            numbers.append(place)
+            if is_new and not self._ledger.knows(place):
+                missing.append((place, candidate))
         self.snapshot = dataclasses.replace(
             self.snapshot,
             level=candidates[0].level,
@@ -187,7 +202,8 @@ class RunDriver:
             seconds_left=self._seconds_left(search, times),
         )
         waited = self._evaluate(missing, number) if missing else 0.0
-        generation = search.tell([self._known[key] for key in keys])
+        self._ledger.settle(candidates)
+        generation = search.tell([self._ledger.outcome(place) for place in numbers])
         self.snapshot = dataclasses.replace(
             self.snapshot,
             generation=number,
@@ -213,21 +229,12 @@ class RunDriver:
             self._keep(lambda: self._store.note(text))
             self._tell("handover", generation, text=generation.note)
 
-    def _number(self, key: tuple[int, str]) -> bool:
-        """Number a design on its first appearance; False if it has been numbered before."""
-        if key in self._numbered:
-            return False
-        # The initial design keeps its own number when it is in a population too.
-        level, text = key
-        if text == variables_text(self._case.initial.variables):
-            self._numbered[key] = initial_id(level)
-            return True
-        self._numbered[key] = self._next_number
-        self._next_number += 1
-        known = self._known.get(key)
-        if known is not None and known.evaluation_id != self._numbered[key]:
-            raise self._diverged(f"design {known.evaluation_id} is asked for as number {self._numbered[key]}")
-        return True
+    def _number(self, candidate: Candidate) -> tuple[int, bool]:
+        """The design's number, and whether it appears for the first time."""
+        try:
+            return self._ledger.number(candidate)
+        except DivergedError as error:
+            raise self._diverged(str(error)) from error
 
     def _compare(self, stored: Generation, replayed: Generation) -> None:
         if stored != replayed:
@@ -245,7 +252,7 @@ class RunDriver:
 
     def _note_versions(self) -> None:
         made_with, now = json.loads(self._store.value("versions", "{}")), software_versions()
-        if made_with != now and self._known:
+        if made_with != now and len(self._ledger):
             text = f"continued with other versions: {json.dumps(now)}"
             self._keep(lambda: self._store.note(text))
 
@@ -264,7 +271,7 @@ class RunDriver:
             waited += -time.monotonic() if now else time.monotonic()
             self._change_state("paused" if now else "running", "")
 
-        tasks = [(number, candidate, self._reference(candidate.level)) for number, candidate in missing]
+        tasks = [(number, candidate, self._reference_of(candidate)) for number, candidate in missing]
 
         def lost(reason: str) -> None:
             nonlocal waited
@@ -307,13 +314,14 @@ class RunDriver:
         except StoreUnwritableError as error:
             blocked = True
             outcome = self._keep(write, error)
-        self._known[candidate.level, variables_text(candidate.variables)] = outcome
+        self._ledger.record(number, candidate, outcome)
         counts = list(self.snapshot.evaluations)
         counts[LEVELS.index(level_of(candidate.level))] += 1
         self.snapshot = dataclasses.replace(
             self.snapshot,
             done=self.snapshot.done + 1,
             evaluations=(counts[0], counts[1]),
+            predictions=self.snapshot.predictions + outcome.predicted,
             failures=self.snapshot.failures + outcome.failed,
         )
         if outcome.failed:
@@ -325,10 +333,9 @@ class RunDriver:
     def _evaluate_initial(self, level: int, planned: bool) -> None:
         """The initial design, at both levels, whether or not a population holds it."""
         variables = self._case.initial.variables
-        key = (level, variables_text(variables))
-        self._number(key)
         candidate = Candidate(level, variables, "initial")
-        if key not in self._known:
+        self._number(candidate)
+        if not self._ledger.knows(initial_id(level)):
             try:
                 self._reference(level)
             except InputError as error:
@@ -339,12 +346,18 @@ class RunDriver:
                 self._record(level, candidate, 0, text)
             else:
                 self._evaluate([(level, candidate)], 0)
-        outcome = self._known[key]
-        if outcome.failed and planned:
+        if self._ledger.outcome(initial_id(level)).failed and planned:
             raise InputError(
                 f"{self._case.name}: the initial design, by which everything is normalised, fails at level {level} "
                 f"({self._store.failure_of(level)}); change [initial] and choose another run file"
             )
+
+    def _reference_of(self, candidate: Candidate) -> Any:
+        """What a design is evaluated with: with a surface, what that has learnt too."""
+        plain = self._reference(candidate.level)
+        if not candidate.surface:
+            return plain
+        return self._learning.reference(candidate.surface, plain, self._keep)
 
     def _reference(self, level: int) -> Any:
         if level not in self._references:

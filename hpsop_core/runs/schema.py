@@ -47,6 +47,7 @@ COLUMNS: dict[str, tuple[str, ...]] = {
         "variables",
         "origin",
         "generation",
+        "surface",
         "status",
         "stage",
         "reason",
@@ -62,6 +63,12 @@ COLUMNS: dict[str, tuple[str, ...]] = {
     "journal": ("id", "at", "text"),
 }
 """The tables' columns, in the order in which a record's checksum goes over them; each has "checksum" after these."""
+
+
+def cells(table: str, version: int) -> str:
+    """A table's columns for a SELECT; what a file of an earlier version has not stands at its only value."""
+    return ",".join("0" if name == "surface" and version < CHECKSUMS_SINCE else name for name in COLUMNS[table])
+
 
 RUN_KEYS = ("case", "case_name", "seeds", "generations", "versions", "created_at", "state", "reason")
 """What every run file has in its table ``run``; those with checksums also "tally" and "open"."""
@@ -82,8 +89,9 @@ CREATE TABLE evaluations (
     id INTEGER PRIMARY KEY,
     level INTEGER NOT NULL,
     variables TEXT NOT NULL,      -- the design variables as JSON, every digit
-    origin TEXT NOT NULL,         -- initial, sample, seed, offspring, handover, reseed, hand
+    origin TEXT NOT NULL,         -- initial, sample, seed, offspring, handover, reseed, renewal, hand
     generation INTEGER NOT NULL,  -- that asked for it first; 0 is before all
+    surface INTEGER NOT NULL,     -- 0: solved; n: predicted by the nth learnt surface
     status TEXT NOT NULL,
     stage TEXT NOT NULL,
     reason TEXT NOT NULL,
@@ -92,7 +100,7 @@ CREATE TABLE evaluations (
     second_objective REAL,
     elapsed REAL NOT NULL,
     finished_at REAL NOT NULL,    -- seconds since 1970
-    fingerprint INTEGER NOT NULL, -- of level and variables
+    fingerprint INTEGER NOT NULL, -- of level, variables and surface
     result BLOB NOT NULL,         -- the evaluation's whole JSON, packed (packing.py)
     checksum INTEGER NOT NULL     -- of all cells before it (checksums.py), here and in the other tables
 );

@@ -278,8 +278,8 @@ class RunStore:
 
     # -- evaluations -----------------------------------------------------------------------------------------------
 
-    def outcomes(self) -> dict[tuple[int, str], Outcome]:
-        """Every evaluation of the search by (level, variables text)."""
+    def outcomes(self) -> dict[int, tuple[int, str, Outcome]]:
+        """Every evaluation of the search by its id: (level, variables text, outcome)."""
         found = {}
         with self._guard, damage_told(self.path):
             content = self._content()
@@ -287,8 +287,20 @@ class RunStore:
                 record = dict(zip(COLUMNS["evaluations"], row, strict=True))
                 if record["origin"] != "hand":
                     outcome = Outcome.from_json(record["id"], content.document(row))
-                    found[record["level"], record["variables"]] = outcome
+                    found[record["id"]] = record["level"], record["variables"], outcome
         return found
+
+    def documents(self, ids: Sequence[int]) -> list[dict[str, Any]]:
+        """The JSON documents of evaluations, in the order given."""
+        documents = []
+        with self._guard, damage_told(self.path):
+            content = self._content()
+            for number in ids:
+                row = next(content.rows("evaluations", "WHERE id = ?", (number,)), None)
+                if row is None:
+                    raise KeyError(number)
+                documents.append(content.document(row))
+        return documents
 
     def elapsed_of(self, number: int) -> float | None:
         """How long an evaluation took in s, or None if there is none of that number."""
@@ -319,7 +331,8 @@ class RunStore:
         data = json.loads(result)
         with self._writing() as connection:
             variables, origin = candidate.variables, candidate.origin
-            self._insert_evaluation(connection, number, candidate.level, variables, origin, generation, data)
+            surface = candidate.surface if data.get("predicted") else 0
+            self._insert_evaluation(connection, number, candidate.level, variables, origin, generation, data, surface)
         return Outcome.from_json(number, data)
 
     def record_by_hand(self, evaluation: Evaluation) -> int:
@@ -436,6 +449,7 @@ class RunStore:
         origin: str,
         generation: int,
         data: dict[str, Any],
+        surface: int = 0,
     ) -> None:
         # Remembered once it is read from the file: a write that fails takes its dictionary along.
         self._dictionary = self._dictionary or bytes.fromhex(self.value("dictionary"))
@@ -450,6 +464,7 @@ class RunStore:
             text,
             origin,
             int(generation),
+            int(surface),
             data["status"],
             data.get("stage", ""),
             data["reason"],
@@ -458,7 +473,7 @@ class RunStore:
             None if second is None else float(second),
             float(data["elapsed"]),
             time.time(),
-            fingerprint(level, text),
+            fingerprint(level, text, surface),
             pack(data, dictionary),
         )
         self._insert(connection, "evaluations", row)

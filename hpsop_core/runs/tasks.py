@@ -4,13 +4,14 @@ from __future__ import annotations
 
 import contextlib
 import ctypes
+import dataclasses
 import math
 import os
 import signal
 import sys
 import threading
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from multiprocessing import connection, parent_process
 from typing import Any, TypeAlias
@@ -32,6 +33,10 @@ ReferenceFunction: TypeAlias = Callable[[Case, int], Any]
 WarmUpFunction: TypeAlias = Callable[[Case, int, Any], None]
 """(case, level, reference): whatever makes the first evaluation as quick as the others; picklable."""
 
+LearnFunction: TypeAlias = Callable[[Case, Any, Sequence[Mapping[str, Any]]], tuple[Any, Mapping[str, float]]]
+"""(case, reference, solved designs' JSON) -> the reference with what was learnt, and how far off that is, by name; the
+reference as it was, and nothing, where the designs are too few."""
+
 _NICENESS = 5
 _PR_SET_PDEATHSIG = 1
 _threads_pinned = False
@@ -46,27 +51,30 @@ class Physics:
         reference_for: what normalises at a level.
         reference_from_dict: makes a reference from its ``as_dict``.
         warm_up: called once in each new worker and level, before evaluations are timed; None if there is no need.
+        learn: called by the run itself with solved designs of level 2; None if nothing can be learnt.
     """
 
     evaluate: EvaluateFunction
     reference_for: ReferenceFunction
     reference_from_dict: Callable[[Mapping[str, Any]], Any]
     warm_up: WarmUpFunction | None = None
+    learn: LearnFunction | None = None
 
 
 def hydrodynamics() -> Physics:
     """The real thing."""
     # Imported here: this module is also the workers' first import, and tests bring their own physics.
     from hpsop_core.evaluation.evaluate import evaluate
-    from hpsop_core.evaluation.reference import Reference, reference_for
+    from hpsop_core.evaluation.reference import Reference, learnt, reference_for
 
-    return Physics(evaluate, reference_for, Reference.from_dict, _evaluate_initial)
+    return Physics(evaluate, reference_for, Reference.from_dict, _evaluate_initial, learnt)
 
 
 def _evaluate_initial(case: Case, level: int, reference: Any) -> None:
     from hpsop_core.evaluation.evaluate import evaluate
 
-    evaluate(case, case.initial.variables, level, reference)
+    # Also where a surface would answer: the solvers are to be made ready.
+    evaluate(case, case.initial.variables, level, dataclasses.replace(reference, surface=None))
 
 
 def evaluation_task(

@@ -6,9 +6,11 @@ import hashlib
 import os
 import signal
 import time
-from dataclasses import replace
+from collections.abc import Mapping, Sequence
+from dataclasses import dataclass, replace
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import HullResult, PropellerResult
@@ -61,6 +63,11 @@ def no_reference_from_dict(data: object) -> None:
 def physics(function: object = evaluate) -> Physics:
     """A physics around one of this module's evaluations."""
     return Physics(function, no_reference, no_reference_from_dict)  # type: ignore[arg-type]
+
+
+def learning_physics(function: object) -> Physics:
+    """A physics that learns."""
+    return Physics(function, no_reference, no_reference_from_dict, learn=learn)  # type: ignore[arg-type]
 
 
 def marking(function: object, marks: Path) -> Physics:
@@ -202,3 +209,41 @@ def killed_reference(case: Case, level: int, marks: Path, times: int) -> None:
     if made < times:
         (marks / f"{level}-{made}").touch()
         os.kill(os.getpid(), signal.SIGKILL)
+
+
+@dataclass(frozen=True)
+class Learnt:
+    """What ``learning`` evaluations are told instead of a reference: a surface's error depends on all that it knows."""
+
+    error: float
+
+
+def surface_case(case: Case) -> Case:
+    """The case with a surface that is soon learnt anew."""
+    settings = {"surface": True, "surface_sample": 6, "surface_checks": 3, "surface_generations": 3}
+    return case.replaced("optimization", **settings)
+
+
+def learn(case: Case, reference: object, solved: Sequence[Mapping[str, Any]]) -> tuple[Learnt, dict[str, float]]:
+    """A surface whose error depends on every design that it was learnt from."""
+    assert all(data["level"] == 2 and not data["predicted"] for data in solved)
+    total = sum(lot(DesignVariables.from_dict(data["variables"]), 2) for data in solved)
+    error = 1e-3 * (total % 1.0)
+    names = ("designs", "answered", "resistance", "greatest_resistance", "efficiency", "greatest_efficiency")
+    return Learnt(error), {**dict.fromkeys(names, error), "designs": len(solved), "answered": len(solved)}
+
+
+def learning(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """Predicted where there is a surface, but for every fifth design, of which it is in doubt."""
+    result = evaluate(case, variables, level, reference)
+    assert isinstance(result, Ok)
+    if not isinstance(reference, Learnt) or lot(variables, level) < 0.2:
+        return result
+    objectives = {name: value + reference.error for name, value in result.objectives.items()}
+    return replace(result, objectives=objectives, predicted=True)
+
+
+def slow_learning(case: Case, variables: DesignVariables, level: int, reference: object) -> Evaluation:
+    """The same after a while, so that a kill hits something."""
+    time.sleep(0.03)
+    return learning(case, variables, level, reference)

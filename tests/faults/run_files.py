@@ -66,9 +66,11 @@ def old_file(path: Path, case: Case | None = None, function: object = None) -> i
         if "TABLE files" in statement:
             continue
         # Of the tables alone: the last column of each, with the comma before it.
-        target.execute(re.sub(r",\s*checksum INTEGER NOT NULL", "", statement))
+        old = re.sub(r",\s*checksum INTEGER NOT NULL", "", statement)
+        target.execute(re.sub(r"surface INTEGER NOT NULL,[^\n]*\n", "", old))
     for table, columns in COLUMNS.items():
         if table != "files":
+            columns = tuple(name for name in columns if name != "surface")
             names, marks = ",".join(columns), ",".join("?" * len(columns))
             keep = "WHERE key NOT IN ('tally', 'open')" if table == "run" else ""
             target.executemany(

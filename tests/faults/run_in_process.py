@@ -17,9 +17,13 @@ def main() -> None:
     physics = None
     if marks:
         physics = quick_physics.marking(getattr(quick_physics, name), Path(marks))
+    elif "learning" in name:
+        physics = quick_physics.learning_physics(getattr(quick_physics, name))
     elif name != "real":
         physics = quick_physics.physics(getattr(quick_physics, name))
     case = small_case(population=population, generations=generations, level1_generations=level1)
+    if "learning" in name:
+        case = quick_physics.surface_case(case)
     optimize(case, path, workers=workers, physics=physics)
 
 

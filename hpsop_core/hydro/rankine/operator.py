@@ -16,8 +16,8 @@ divided by the same difference of x.
 from __future__ import annotations
 
 import numpy as np
+from numba import njit
 
-from hpsop_core.compiled import njit
 from hpsop_core.typing_aliases import Array
 
 # Columns i + 2 .. i - 3.
@@ -55,7 +55,7 @@ def difference_weights(x: Array) -> Array:
     return weights
 
 
-@njit()
+@njit(cache=True)
 def convect(values: Array, weights: Array, speed: Array, reaction: Array, out: Array) -> None:
     """out = speed * D values + reaction * values for every column of ``values``, D the difference along the rows.
 

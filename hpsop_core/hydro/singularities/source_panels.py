@@ -20,8 +20,8 @@ import math
 from dataclasses import dataclass
 
 import numpy as np
+from numba import njit
 
-from hpsop_core.compiled import njit
 from hpsop_core.typing_aliases import Array
 
 FAR_DIAGONALS = 4.0
@@ -108,7 +108,7 @@ def flat_panels(quads: Array) -> SourcePanels:
     )
 
 
-@njit(inline="always")
+@njit(cache=True, inline="always")
 def _solid_angle_triangle(
     ax: float, ay: float, az: float, bx: float, by: float, bz: float, cx: float, cy: float, cz: float,
     ra: float, rb: float, rc: float,
@@ -124,7 +124,7 @@ def _solid_angle_triangle(
     return -2.0 * math.atan2(triple, denominator)
 
 
-@njit()
+@njit(cache=True)
 def _near(
     px: float, py: float, pz: float, corners: Array, normal: Array, edge_normal: Array, edge_length: Array
 ) -> tuple[float, float, float]:
@@ -158,7 +158,7 @@ def _near(
     return vx, vy, vz
 
 
-@njit(inline="always")
+@njit(cache=True, inline="always")
 def _far(rx: float, ry: float, rz: float, area: float, moment: Array) -> tuple[float, float, float]:
     """4 pi times the velocity at distance (rx, ry, rz) from the centroid: monopole and quadrupole."""
     r2 = rx * rx + ry * ry + rz * rz
@@ -173,7 +173,7 @@ def _far(rx: float, ry: float, rz: float, area: float, moment: Array) -> tuple[f
     return radial * rx - 3.0 * mx * inverse_5, radial * ry - 3.0 * my * inverse_5, radial * rz - 3.0 * mz * inverse_5
 
 
-@njit()
+@njit(cache=True)
 def _panel_velocities(
     points: Array,
     image_z: bool,
@@ -249,7 +249,7 @@ def panel_velocities(
     return out
 
 
-@njit()
+@njit(cache=True)
 def _point_velocities(points: Array, sources: Array, weight: Array, out_x: Array, out_y: Array, out_z: Array) -> None:
     """Fill (n, m) velocities of m point sources of strength ``weight``, with their y-images, at n points."""
     scale = 1.0 / _FOUR_PI
@@ -284,7 +284,7 @@ def point_velocities(points: Array, sources: Array, weight: Array) -> tuple[Arra
     return out
 
 
-@njit()
+@njit(cache=True)
 def _surface_influence(
     points: Array, sources: Array, weight: Array, u: Array, v: Array, along: Array, vertical: Array
 ) -> None:

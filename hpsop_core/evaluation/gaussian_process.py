@@ -1,0 +1,160 @@
+"""Regression by Gaussian processes: smooth functions of a few variables, each prediction with its standard deviation.
+
+Ordinary kriging with an anisotropic kernel and a nugget; several outputs share one kernel. Length scales and nugget are
+the maximum of the likelihood concentrated over mean and variance (Rasmussen and Williams, Gaussian Processes for
+Machine Learning, 2006, equations 2.23 to 2.26, 5.8 and 5.9; Jones, Schonlau and Welch, J. Global Optimization 13, 1998,
+455). Written on scipy: two hundred points need no library for it, and importing one would cost each worker a second.
+"""
+
+from __future__ import annotations
+
+import math
+from dataclasses import dataclass
+
+import numpy as np
+from scipy.linalg import LinAlgError, cho_factor, cho_solve, solve_triangular
+from scipy.optimize import minimize
+
+from hpsop_core.one_thread import one_blas_thread
+from hpsop_core.typing_aliases import Array
+
+# Length scales in units of the data's range, nugget in units of the variance.
+_SCALES = (0.05, 50.0)
+_NUGGETS = (1e-10, 1e-2)
+_STARTS = ((0.6, 1e-6), (2.5, 1e-7))
+_STEPS = 80
+_SQRT5 = math.sqrt(5.0)
+
+
+@dataclass(frozen=True, eq=False)
+class GaussianProcess:
+    """A fitted regression; picklable.
+
+    Attributes:
+        lower, extent: (d,) of the inputs' box, which is scaled to one.
+        points: (n, d) the inputs, scaled.
+        scales: (d,) length scales in units of the box.
+        nugget: over the variance.
+        factor: (n, n) lower Cholesky factor of the correlations, nugget included.
+        weights: (n, m) correlations' inverse times what is left of the outputs without their means.
+        mean, variance: (m,) of each output.
+        held_out: (n, m) error of the prediction of each point by all others, at these scales.
+        held_out_deviation: (n, m) standard deviation of that prediction.
+    """
+
+    lower: Array
+    extent: Array
+    points: Array
+    scales: Array
+    nugget: float
+    factor: Array
+    weights: Array
+    mean: Array
+    variance: Array
+    held_out: Array
+    held_out_deviation: Array
+
+    def predict(self, inputs: Array) -> tuple[Array, Array]:
+        """Means and standard deviations at one input of shape (d,); each of shape (m,)."""
+        place = (np.asarray(inputs, dtype=np.float64) - self.lower) / self.extent
+        correlation = _correlation(place[None, :], self.points, self.scales)[0]
+        spread = solve_triangular(self.factor, correlation, lower=True, check_finite=False)
+        unknown = max(0.0, 1.0 - float(spread @ spread))
+        return self.mean + correlation @ self.weights, np.sqrt(self.variance * unknown)
+
+
+@one_blas_thread()
+def fit(inputs: Array, outputs: Array) -> GaussianProcess | None:
+    """Fit a regression.
+
+    Args:
+        inputs: (n, d); a column without spread has no effect.
+        outputs: (n, m), smooth functions of the inputs.
+
+    Returns:
+        The regression; None where the data have none (fewer than four points more than inputs, or no likelihood).
+    """
+    points, values = np.asarray(inputs, dtype=np.float64), np.asarray(outputs, dtype=np.float64)
+    count, dimensions = points.shape
+    if count < dimensions + 4:
+        return None
+    lower, extent = points.min(axis=0), np.ptp(points, axis=0)
+    extent = np.where(extent > 1e-9 * np.maximum(1.0, np.abs(lower)), extent, np.inf)
+    scaled = (points - lower) / extent
+    centre = values.mean(axis=0)
+    size = np.std(values, axis=0)
+    size = np.where(size > 0.0, size, 1.0)
+    normal = (values - centre) / size
+    squares = (scaled[:, None, :] - scaled[None, :, :]) ** 2
+    bounds = [tuple(np.log(_SCALES))] * dimensions + [tuple(np.log(_NUGGETS))]
+    best: tuple[float, Array] | None = None
+    for scale, nugget in _STARTS:
+        start = np.log([scale] * dimensions + [nugget])
+        found = minimize(
+            _loss, start, (squares, normal), jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": _STEPS}
+        )
+        if np.isfinite(found.fun) and (best is None or found.fun < best[0]):
+            best = float(found.fun), found.x
+    if best is None:
+        return None
+    scales, nugget = np.exp(best[1][:-1]), float(np.exp(best[1][-1]))
+    try:
+        factor = cho_factor(_correlation(scaled, scaled, scales) + nugget * np.eye(count), lower=True)
+    except LinAlgError:
+        return None
+    mean, weights, variance = _concentrated(factor, normal)
+    inverse = cho_solve(factor, np.eye(count), check_finite=False)
+    # Without a point the others' mean is another one too.
+    sums = inverse.sum(axis=1)
+    kept = (np.diag(inverse) - sums**2 / np.sum(sums))[:, None]
+    return GaussianProcess(
+        lower=lower,
+        extent=extent,
+        points=scaled,
+        scales=scales,
+        nugget=nugget,
+        factor=np.tril(factor[0]),
+        weights=weights * size,
+        mean=centre + size * mean,
+        variance=variance * size**2,
+        held_out=weights / kept * size,
+        held_out_deviation=np.sqrt(variance / kept) * size,
+    )
+
+
+def _correlation(first: Array, second: Array, scales: Array) -> Array:
+    """Matern's correlation of smoothness 5/2 between (n, d) and (k, d) points, (n, k)."""
+    distance = np.sqrt(np.sum(((first[:, None, :] - second[None, :, :]) / scales) ** 2, axis=2))
+    return np.asarray((1.0 + _SQRT5 * distance + 5.0 / 3.0 * distance**2) * np.exp(-_SQRT5 * distance))
+
+
+def _concentrated(factor: tuple[Array, bool], values: Array) -> tuple[Array, Array, Array]:
+    """Best means (m,), weights (n, m) and variances (m,) of outputs with given correlations."""
+    ones = np.ones(len(values))
+    solved_ones, solved = cho_solve(factor, ones, check_finite=False), cho_solve(factor, values, check_finite=False)
+    mean = (ones @ solved) / (ones @ solved_ones)
+    weights = solved - solved_ones[:, None] * mean
+    variance = np.sum((values - mean) * weights, axis=0) / len(values)
+    return np.asarray(mean), np.asarray(weights), np.maximum(variance, 1e-300)
+
+
+def _loss(logarithms: Array, squares: Array, values: Array) -> tuple[float, Array]:
+    """Minus the concentrated log likelihood of all outputs, and its gradient."""
+    scales, nugget = np.exp(logarithms[:-1]), float(np.exp(logarithms[-1]))
+    count, outputs = values.shape
+    distance = np.sqrt(squares @ scales**-2)
+    decay = np.exp(-_SQRT5 * distance)
+    matrix = (1.0 + _SQRT5 * distance + 5.0 / 3.0 * distance**2) * decay
+    try:
+        factor = cho_factor(matrix + nugget * np.eye(count), lower=True, check_finite=False)
+    except LinAlgError:
+        return 1e12, np.zeros_like(logarithms)
+    _, weights, variance = _concentrated(factor, values)
+    inverse = cho_solve(factor, np.eye(count), check_finite=False)
+    determinant = 2.0 * float(np.sum(np.log(np.diag(factor[0]))))
+    loss = 0.5 * count * float(np.sum(np.log(variance))) + 0.5 * outputs * determinant
+    # d loss / d matrix; the change of a correlation with its distance is -5/3 r (1 + sqrt 5 r) exp(-sqrt 5 r) dr.
+    slope = 0.5 * outputs * inverse - 0.5 * (weights / variance) @ weights.T
+    by_square = slope * (5.0 / 3.0 * (1.0 + _SQRT5 * distance) * decay)
+    gradient = np.einsum("ij,ijk->k", by_square, squares) * scales**-2
+    return loss, np.append(gradient, nugget * np.trace(slope))

@@ -1,0 +1,117 @@
+"""A learnt surface against the solvers that it learnt from: level 1's, whose answers cost nothing."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from hpsop_core.case.case import Case, load_case
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.reference import Reference, learnt, reference_for
+from hpsop_core.evaluation.result import Ok
+from hpsop_core.optimization.sampling import latin_hypercube
+
+
+def designs(case: Case, count: int, seed: int) -> list[DesignVariables]:
+    """Designs whose form carries what is asked."""
+    sample = latin_hypercube(case.bounds, 3 * count, seed)
+    found = [case.bounds.decode(vector) for vector in sample]
+    return [v for v in found if 0.60 < _block_coefficient(case, v) < 0.72][:count]
+
+
+def _block_coefficient(case: Case, variables: DesignVariables) -> float:
+    initial = case.initial
+    box = variables.length * variables.breadth * variables.draft
+    # The parent has 0.661 at the initial dimensions.
+    return 0.661 * initial.length * initial.breadth * initial.draft * variables.displacement_ratio / box
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    plain = load_case("dtc-p4119")
+    bounds = {"buoyancy_centre_shift": (-0.01, 0.01), "expanded_area_ratio": (0.55, 0.9), "draft": (13.5, 14.5)}
+    return plain.with_bounds(bounds)
+
+
+@pytest.fixture(scope="module")
+def reference(case: Case) -> Reference:
+    return reference_for(case, 1)
+
+
+@pytest.fixture(scope="module")
+def solved(case: Case, reference: Reference) -> list[Ok]:
+    found = [evaluate(case, variables, 1, reference) for variables in designs(case, 90, 1)]
+    return [result for result in found if isinstance(result, Ok)]
+
+
+@pytest.fixture(scope="module")
+def surface(case: Case, reference: Reference, solved: list[Ok]) -> Reference:
+    with_surface, errors = learnt(case, reference, [result.as_dict() for result in solved])
+    assert with_surface.surface is not None
+    # Half a per cent of doubt in waves that are about a third of the resistance.
+    assert 0.0 < errors["resistance"] < 2e-3 and errors["efficiency"] < 1e-3
+    return with_surface
+
+
+def test_fresh_designs_are_predicted(case: Case, reference: Reference, surface: Reference) -> None:
+    answered, resistance, efficiency = 0, [], []
+    fresh = designs(case, 40, 2)
+    for variables in fresh:
+        guess, truth = evaluate(case, variables, 1, surface), evaluate(case, variables, 1, reference)
+        assert guess.ok and truth.ok
+        if not guess.predicted:
+            # In doubt it asks the solvers: the same bits.
+            assert dataclasses.replace(guess, elapsed=0.0) == dataclasses.replace(truth, elapsed=0.0)
+            continue
+        answered += 1
+        assert guess.hull == truth.hull and guess.propeller == truth.propeller
+        for ours, theirs in zip(guess.conditions, truth.conditions, strict=True):
+            assert ours.friction_resistance == theirs.friction_resistance
+            resistance.append(ours.total_resistance / theirs.total_resistance - 1.0)
+            efficiency.append(ours.open_water_efficiency / theirs.open_water_efficiency - 1.0)
+    # In six dimensions that many designs leave room between them.
+    assert answered >= len(fresh) // 3
+    # What is asked of it: half a per cent in resistance and efficiency.
+    assert np.max(np.abs(resistance)) < 5e-3
+    assert np.max(np.abs(efficiency)) < 5e-3
+
+
+def test_what_it_learnt_from_it_gives_back(case: Case, surface: Reference, solved: list[Ok]) -> None:
+    for result in solved[:10]:
+        guess = evaluate(case, result.variables, 1, surface)
+        assert guess.ok and guess.predicted
+        assert guess.objectives == pytest.approx(result.objectives, rel=1e-5)
+
+
+@pytest.mark.parametrize(
+    "changes",
+    [
+        {"length_to_breadth": 12.0, "breadth_to_draft": 3.4},  # far outside
+        {"displacement_ratio": 1.35},  # clipped
+        {"pitch_ratio": 1.4},
+        {"buoyancy_centre_shift": 0.045},
+    ],
+)
+def test_beyond_its_knowledge_it_is_silent(case: Case, surface: Reference, changes: dict[str, float]) -> None:
+    """Extrapolated waves are wrong by factors: nothing of the kind may come out as an answer."""
+    result = evaluate(case, case.initial.variables.replaced(changes), 1, surface)
+    assert not result.ok or not result.predicted
+
+
+def test_few_clipped_or_predicted_designs_teach_nothing(case: Case, reference: Reference, solved: list[Ok]) -> None:
+    documents = [result.as_dict() for result in solved]
+    assert learnt(case, reference, documents[:15])[0].surface is None
+    clipped = [{**data, "hull": {**data["hull"], "clipped": True}} for data in documents]
+    assert learnt(case, reference, clipped)[0].surface is None
+    assert learnt(case, reference, [{**data, "predicted": True} for data in documents])[0].surface is None
+
+
+def test_with_a_limit_on_back_cavitation_the_propeller_is_solved(case: Case, surface: Reference) -> None:
+    limited = case.replaced("constraints", back_cavitation_limit=0.1)
+    result = evaluate(limited, case.initial.variables, 1, surface)
+    exact = evaluate(limited, case.initial.variables, 1, dataclasses.replace(surface, surface=None))
+    assert result.ok and exact.ok and result.predicted
+    assert result.open_water == exact.open_water
