@@ -51,6 +51,7 @@ class Front:
         mark_styles: CSS of each mark; none means no own style.
         key: words of the legend, and name in the CSV.
         counts: how many designs each mark stands for; none means one each.
+        line: (m, 2) points of the line; None for those of the marks.
     """
 
     points: Array
@@ -60,6 +61,7 @@ class Front:
     mark_styles: Sequence[str] = ()
     key: str = ""
     counts: Sequence[int] = ()
+    line: Array | None = None
 
 
 @dataclass(frozen=True)
@@ -99,6 +101,7 @@ def family_front(front: Front, names: Sequence[int]) -> tuple[Cloud, Front]:
         points=front.points[middle],
         mark_styles=[front.mark_styles[row] for row in middle] if front.mark_styles else (),
         counts=[len(row) for row in rows],
+        line=front.points,
     )
     return Cloud(front.points, front.css, 1.7, "opacity:.55"), marked
 
@@ -136,8 +139,8 @@ def pareto_chart(
         f = cloud.points
         plot.dots(f[:, 0], f[:, 1], cloud.radius, cloud.css, cloud.style, name=cloud.key, key=cloud.key)
     for front in fronts:
-        f = front.points
-        plot.line(f[:, 0], f[:, 1], f"{front.css} thin", front.line_style, name=front.key)
+        f, path = front.points, front.points if front.line is None else front.line
+        plot.line(path[:, 0], path[:, 1], f"{front.css} thin", front.line_style, name=front.key)
         for row in range(len(f)):
             style = front.mark_styles[row] if front.mark_styles else ""
             key = front.key if row == 0 else ""

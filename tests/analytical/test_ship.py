@@ -329,3 +329,18 @@ def test_active_bounds_are_those_within_one_per_cent_of_the_range() -> None:
         "length_to_breadth": "lower", "breadth_to_draft": "upper", "blade_count": "upper",
     }  # fmt: skip
     assert CASE.bounds.active(CASE.initial.variables.replaced({"diameter": 9.4901}))["diameter"] == "upper"
+
+
+def test_level_2_limits_the_share_of_the_back_below_vapour_pressure() -> None:
+    case = CASE.changed({"conditions": {"froude_numbers": [0.20, 0.24], "weights": [0.4, 0.6]},
+                         "engine": {"maximum_continuous_rating": 1.2e8},
+                         "constraints": {"back_cavitation_limit": 0.1}})  # fmt: skip
+    result = evaluate(case, None, 2)
+    assert result.ok
+    first, second = (condition.blade_cavitating_share for condition in result.conditions)
+    assert result.constraints["back_cavitation"] == pytest.approx(first - 0.1, abs=1e-12)
+    everywhere = evaluate(case.replaced("constraints", cavitation_conditions="all"), None, 2)
+    assert everywhere.ok and second > first
+    assert everywhere.constraints["back_cavitation"] == pytest.approx(second - 0.1, abs=1e-12)
+    # The fast level knows no pressures on the blades.
+    assert evaluate(case, None, 1).constraints["back_cavitation"] is None
