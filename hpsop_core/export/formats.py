@@ -2,8 +2,8 @@
 
 from __future__ import annotations
 
-import importlib.util
 from collections.abc import Sequence
+from importlib.util import find_spec
 
 from hpsop_core.errors import InputError
 
@@ -25,7 +25,7 @@ def checked_formats(formats: Sequence[str]) -> tuple[str, ...]:
     for name in formats:
         if name not in FORMATS:
             raise InputError(f"--formats: '{name}' is not a format; give any of {','.join(FORMATS)}")
-        if name in OF_OPENCASCADE and importlib.util.find_spec("OCP") is None:
+        if name in OF_OPENCASCADE and find_spec("OCP") is None:
             raise InputError(
                 f"--formats: '{name}' needs OpenCASCADE; pip install 'hpsop[cad]', or take 3dm, which holds the same "
                 "surfaces"

@@ -99,3 +99,26 @@ def test_the_download_holds_the_same_files(run: RunReader, tmp_path: Path) -> No
     for file in files:
         if file.suffix in (".csv", ".txt"):
             assert archive.read(file.name) == file.read_bytes()
+
+
+def test_step_without_opencascade_says_what_to_install(
+    run: RunReader, tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.setattr("hpsop_core.export.formats.find_spec", lambda _name: None)
+    words = ["export", str(run.path), "--design", "initial", "--to", str(tmp_path / "out"), "--formats", "json,step"]
+    assert main(words) == 2
+    error = capsys.readouterr().err
+    assert "pip install 'hpsop[cad]'" in error and error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_step_and_iges_by_the_command(run: RunReader, tmp_path: Path, capfd: pytest.CaptureFixture[str]) -> None:
+    pytest.importorskip("OCP", reason="OpenCASCADE is an extra: pip install 'hpsop[cad]'")
+    folder = tmp_path / "out"
+    words = ["export", str(run.path), "--design", "initial", "--to", str(folder), "--formats", "iges,step"]
+    assert main(words) == 0
+    # Not a word of OpenCASCADE's own among them, which writes past Python's standard output.
+    written = [Path(line.split("  ")[0]).name for line in capfd.readouterr().out.splitlines()]
+    assert written == ["design.step", "design.iges", "README.txt"]
+    assert {file.name for file in folder.iterdir()} == set(written)
+    assert (folder / "design.step").read_text().startswith("ISO-10303-21;")

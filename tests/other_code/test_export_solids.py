@@ -182,3 +182,29 @@ def test_a_surface_comes_back_from_every_program_as_it_went(shape: str) -> None:
         ):
             # millimetres and back, weights in and out: rounding only
             assert np.allclose(NurbsSurface.from_geomdl(back).evaluate(U, V), points, atol=1e-9)
+
+
+@pytest.mark.parametrize(("body", "size"), [("propeller", 0.6), ("hull", 3.0)])
+def test_gmsh_fills_the_solid_with_tetrahedra(folder: Path, body: str, size: float) -> None:
+    try:
+        import gmsh
+    except (ImportError, OSError) as missing:  # its wheel needs libraries of the desktop
+        pytest.skip(f"gmsh cannot be loaded: {missing}")
+    gmsh.initialize(interruptible=False)
+    try:
+        gmsh.option.setNumber("General.Terminal", 0)
+        gmsh.option.setString("Geometry.OCCTargetUnit", "M")
+        gmsh.option.setNumber("Mesh.MeshSizeMax", size)
+        gmsh.merge(str(folder / "design.step"))
+        names = {gmsh.model.getEntityName(3, tag).split("/")[-1]: (3, tag) for _, tag in gmsh.model.getEntities(3)}
+        others = [entity for name, entity in names.items() if name != body]
+        gmsh.model.occ.remove(others, recursive=True)
+        gmsh.model.occ.synchronize()
+        gmsh.model.mesh.generate(3)
+        _, tags, _ = gmsh.model.mesh.getElements(3)
+        volumes = gmsh.model.mesh.getElementQualities(tags[0], "volume")
+    finally:
+        gmsh.finalize()
+    assert np.min(volumes) > 0.0
+    # Flat facets of the asked size cut off that much of a round body.
+    assert float(np.sum(volumes)) == pytest.approx(volume(read(folder / "design.step")[body]), rel=0.05)
