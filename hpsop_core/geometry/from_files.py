@@ -69,8 +69,7 @@ def read_own_hull(source: str | Path, options: ReadOptions) -> HullFile:
     if options.length is None or options.draft is None:
         raise InputError(f"{path.name}: a hull from a file needs length (Lpp) and draft, in metres")
     if path.suffix.lower() in UNITLESS_SUFFIXES and options.unit is None:
-        kind = path.suffix[1:].upper()
-        raise InputError(f"{path.name}: an {kind} carries no unit; give unit m, mm, cm, ft or in")
+        raise InputError(f"{path.name}: {path.suffix[1:].upper()} files carry no unit; give unit m, mm, cm, ft or in")
     return read_hull(path, options)
 
 
