@@ -27,7 +27,8 @@ _BOUNDS = """
 ## [bounds]
 
 Lower and upper bound of each design variable; equal bounds fix it. Not stated, these are fixed at the initial design's
-values: {optional}.
+values: {optional}. The initial design's own displacement_ratio is 1 here, whatever [initial] states:
+that one is over the parent's form, this one over the initial design.
 
 | variable | symbol | unit | may be | meaning |
 |---|---|---|---|---|"""

@@ -258,7 +258,7 @@ def _assembled(tables: Mapping[str, Any], texts: Mapping[str, Any], where: str, 
         bounds = dict(tables["bounds"])
         for name, variable in VARIABLE_TABLE.items():
             if not variable.bounds_required:
-                bounds.setdefault(name, (getattr(sections["initial"], name),) * 2)
+                bounds.setdefault(name, (getattr(sections["initial"].variables, name),) * 2)
         return Case(
             name=texts.get("name", stem),
             title=texts.get("title", texts.get("name", stem)),

@@ -100,15 +100,19 @@ class InitialSection(StatedVariables, MainDimensions):
     def variables(self) -> DesignVariables:
         """The initial design's variables.
 
+        Its displacement ratio as a design variable is 1 whatever is stated here: a variable's ratio is to the initial
+        design's own displacement V0, in which the stated one has its place already.
+
         Raises:
             InputError: its proportions are outside what a design variable may be.
         """
-        proportions = {
+        own = {
             "length_to_breadth": self.length / self.breadth,
             "breadth_to_draft": self.breadth / self.draft,
+            "displacement_ratio": 1.0,
         }
         stated = {field.name: getattr(self, field.name) for field in dataclasses.fields(StatedVariables)}
-        return DesignVariables.from_dict({**proportions, **stated}, "initial")
+        return DesignVariables.from_dict({**stated, **own}, "initial")
 
 
 @dataclass(frozen=True)
