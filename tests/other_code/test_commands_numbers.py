@@ -62,7 +62,8 @@ def test_the_water_is_the_one_that_was_named(
 
 
 def test_the_waters_are_ittcs() -> None:
-    # ITTC 7.5-02-01-03 at 15 C: 999.1026 kg/m3 and 1.1386e-6 m2/s fresh; 1026.021 (1025 by use) and 1.1892e-6 sea water.
+    # ITTC 7.5-02-01-03 at 15 C: 999.1026 kg/m3 and 1.1386e-6 m2/s fresh,
+    # 1026.021 (1025 by use) and 1.1892e-6 sea water.
     assert WATERS["fresh"] == pytest.approx((999.1026, 1.1386e-6), rel=1e-4)
     assert WATERS["salt"] == pytest.approx((1026.021, 1.1892e-6), rel=2e-3)
 
