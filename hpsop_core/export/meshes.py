@@ -21,7 +21,8 @@ from hpsop_core.typing_aliases import Array, IntArray
 _TO_GLTF = np.array([[1.0, 0.0, 0.0, 0.0], [0.0, 0.0, 1.0, 0.0], [0.0, -1.0, 0.0, 0.0], [0.0, 0.0, 0.0, 1.0]])
 _SHARP_EDGE = float(np.radians(35.0))
 _VERTEX = "vertex %.6f %.6f %.6f\n"
-_FACET = f"facet normal %.4f %.4f %.4f\nouter loop\n{3 * _VERTEX}endloop\nendfacet"
+_FACET = f"facet normal %.4f %.4f %.4f\nouter loop\n{3 * _VERTEX}endloop\nendfacet\n"
+_FACETS_AT_ONCE = 5000
 _COLOURS = {"underwater": (150, 60, 50, 255), "topsides": (70, 95, 120, 255), "propeller": (190, 150, 60, 255)}
 
 
@@ -66,7 +67,8 @@ def _write_regions(path: Path, names: Sequence[str], vertices: Array, faces: Int
             chosen = rows[place == number]
             if len(chosen):
                 file.write(f"solid {name}\n")
-                np.savetxt(file, chosen, fmt=_FACET)
+                for some in np.array_split(chosen, len(chosen) // _FACETS_AT_ONCE + 1):
+                    file.write(_FACET * len(some) % tuple(some.ravel().tolist()))
                 file.write(f"endsolid {name}\n")
 
 
