@@ -13,21 +13,24 @@ from hpsop_core.evaluation.result import evaluation_from_dict
 
 KEYS = {
     "": {"case", "level", "status", "reason", "variables", "hull", "propeller", "conditions", "objectives",
-         "constraints", "feasible", "warnings", "open_water", "elapsed"},
+         "constraints", "feasible", "warnings", "open_water", "elapsed", "active_bounds", "fuel_per_hour",
+         "carbon_dioxide_per_hour", "errors"},
     "variables": {"length_to_breadth", "breadth_to_draft", "draft", "diameter", "blade_count", "pitch_ratio",
                   "displacement_ratio", "expanded_area_ratio", "buoyancy_centre_shift"},
     "hull": {"length", "breadth", "draft", "block_coefficient", "displaced_volume", "wetted_surface",
-             "longitudinal_centre_of_buoyancy"},
+             "longitudinal_centre_of_buoyancy", "displacement_mass", "metacentre_height", "metacentric_height",
+             "deadweight", "midship_coefficient", "prismatic_coefficient", "waterplane_coefficient"},
     "propeller": {"diameter", "blade_count", "pitch_ratio", "pitch_diameter_ratio_07R", "expanded_area_ratio"},
     "objectives": {"f1", "f2"},
-    "constraints": {"displacement", "diameter_to_draft", "cavitation"},
+    "constraints": {"displacement", "diameter_to_draft", "cavitation", "form", "propeller_clearance", "back_cavitation",
+                    "tip_clearance", "length", "breadth", "metacentric_height", "engine"},
     "open_water": {"advance_coefficient", "thrust_coefficient", "torque_coefficient", "open_water_efficiency"},
 }  # fmt: skip
 CONDITION_KEYS = {
     "froude_number", "weight", "speed", "friction_resistance", "wave_resistance", "total_resistance",
     "wave_coefficient", "wake_fraction", "thrust_deduction", "advance_coefficient", "rotation_rate_rpm", "thrust",
     "torque", "thrust_coefficient", "torque_coefficient", "open_water_efficiency", "delivered_power",
-    "required_expanded_area_ratio",
+    "required_expanded_area_ratio", "fuel_rate",
 }  # fmt: skip
 
 

@@ -6,7 +6,7 @@ import math
 
 import viser
 
-from explorer.charts.pareto import front_order, pick
+from explorer.charts.pareto import front_order, newest_families, pick
 from explorer.server.bridge import PageEvent, tooltip
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
@@ -15,6 +15,7 @@ from explorer.views.chips import NOTHING, soft
 from explorer.views.on_display import select_design
 from explorer.views.pareto.chart import ParetoChart
 from explorer.views.tables import design_card
+from hpsop_core.markup import Markup
 
 # a click so near to the initial design's mark means it, px
 _NEAR = 14.0
@@ -93,7 +94,17 @@ class ParetoPicking:
             return
         crowded = len(found) > 1
         more = soft(f"{len(found)} designs coincide here: click again for the next.") if crowded else NOTHING
-        self._tip.show(tooltip("pareto", design_card(shown) + more, self._serial))
+        self._tip.show(tooltip("pareto", design_card(shown) + more + self._family(found[0]), self._serial))
+
+    def _family(self, design_id: int) -> Markup:
+        """How many designs of the newest front cannot be told from this one."""
+        picture = self._session.picture
+        rows, names, _ = newest_families(picture, self._session.scrubbed)
+        own = [name for row, name in zip(rows, names, strict=True) if int(picture.ids[row]) == design_id]
+        count = names.count(own[0]) if own else 0
+        return (
+            soft(f"One of {count} designs that the error of their numbers cannot tell apart.") if count > 1 else NOTHING
+        )
 
     def _key(self, event: PageEvent) -> None:
         session = self._session
