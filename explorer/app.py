@@ -29,6 +29,7 @@ from explorer.server.visitors import Visitors
 from explorer.server.worker import LatestWorker
 from explorer.services.library import RunLibrary, runs_folder
 from explorer.services.page_memory import PageMemory, remembered
+from explorer.services.reading import HULL_SUFFIXES, hull_file
 from explorer.services.services import open_services
 from explorer.state.app_state import AppState
 from explorer.state.draft import Draft
@@ -56,6 +57,7 @@ class Explorer:
         restored: what the settings were when the server last stopped (``remembered``), if they are to come back.
         origins: Origins of pages that may drive this one beside its own (``origin_of``).
         run_asked: whether a person asked for that run; where not, the demonstration stands in for one that is damaged.
+        hull: a hull file to bring in: its name for people, and its bytes.
 
     Attributes:
         address: what opens the page, with its token.
@@ -77,6 +79,7 @@ class Explorer:
         restored: Mapping[str, Any] | None = None,
         origins: Sequence[str] = (),
         run_asked: bool = True,
+        hull: tuple[str, bytes] | None = None,
     ) -> None:
         self.folder = folder or runs_folder()
         token = token_of(self.folder)
@@ -94,6 +97,8 @@ class Explorer:
         self.trouble = ""
         if run is not None:
             self._open(run, read_only, run_asked)
+        if hull is not None:
+            self.services.ships.bring_hull(*hull)
         notices = Notices()
         self.access = Access(token, origins, notices)
         self.server = secure_server(host, port, "hpsop", self.access)
@@ -168,7 +173,7 @@ class Explorer:
         """End the run (its file keeps everything) and the server; no process stays behind."""
         self._gone.set()
         self._visitors.close()
-        self.services.runs.close()
+        self.services.close()
         # viser says goodbye on standard output, which is ours
         with contextlib.suppress(RuntimeError), contextlib.redirect_stdout(io.StringIO()):
             self.server.stop()
@@ -195,10 +200,18 @@ class _Opening:
     run: Path | None = None
     read_only: bool = False
     restored: Mapping[str, Any] | None = None
+    hull: tuple[str, bytes] | None = None
 
 
-def _chosen(what: str | None, folder: Path) -> _Opening:
-    if what is not None:
+def _chosen(words: Sequence[str], folder: Path) -> _Opening:
+    if len(words) == 2 and words[0].lower() == "hull":
+        return _Opening(load_case(DEFAULT_CASE), hull=hull_file(words[1]))
+    if len(words) > 1:
+        raise InputError(f"hpsop-explore: '{words[1]}' is one too many; give a case, a run, or hull FILE")
+    if words:
+        what = words[0]
+        if Path(what).suffix.lower() in HULL_SUFFIXES:
+            return _Opening(load_case(DEFAULT_CASE), hull=hull_file(what))
         if what.endswith(".hpsop"):
             return _Opening(open_run(what).case, Path(what))
         return _Opening(load_case(what))
@@ -224,9 +237,9 @@ def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     )
     parser.add_argument(
         "what",
-        nargs="?",
-        metavar="CASE | RUN.hpsop",
-        help="a shipped case, a TOML file or a run; by default your latest run",
+        nargs="*",
+        metavar="CASE | RUN.hpsop | hull FILE",
+        help="a shipped case, a TOML file, a run, or a hull file of your own; by default your latest run",
     )
     parser.add_argument("--host", default="127.0.0.1", help="address to listen on (default: this machine only)")
     parser.add_argument("--port", type=int, default=8080, help="port (default 8080; the next free one if it is busy)")
@@ -240,7 +253,7 @@ def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
     )
     parser.add_argument("--no-browser", action="store_true", help="do not open a browser")
     parser.add_argument("--workers", type=int, default=None, help="processes of a run (default: all cores)")
-    return parser.parse_args(argv)
+    return parser.parse_intermixed_args(argv)
 
 
 def main(argv: Sequence[str] | None = None) -> int:
@@ -264,7 +277,8 @@ def main(argv: Sequence[str] | None = None) -> int:
             arguments.workers,
             opening.restored,
             origins,
-            run_asked=arguments.what is not None,
+            run_asked=bool(arguments.what),
+            hull=opening.hull,
         )
     except HpsopError as error:
         sys.stderr.write(f"{error}\n")

@@ -9,6 +9,7 @@ import viser
 from explorer.server.bridge import Bridge, PageEvent
 from explorer.server.guard import guard
 from explorer.server.html_slot import Slot
+from explorer.server.uploads import Uploads
 from explorer.services.services import Services
 from explorer.state.app_state import AppState
 from explorer.state.session import LEFT_DOCK, Session
@@ -27,6 +28,7 @@ from explorer.views.run_control import RunControl
 from explorer.views.run_view import RunView
 from explorer.views.scene_view import SceneView
 from explorer.views.settings_view import SettingsView
+from explorer.views.ship_view import ShipView
 from explorer.views.toolbar_view import ToolbarView
 from explorer.views.whatif_view import WhatIfView
 from hpsop_core.errors import HpsopError
@@ -70,16 +72,18 @@ def build_shared(app: AppState, services: Services, server: viser.ViserServer) -
 def build_session(session: Session, services: Services, client: viser.ClientHandle) -> None:
     """The right dock and the 3D view of one browser."""
     gui, designs = client.gui, services.designs
-    guard(gui, session.app.refuse)
+    guard(gui, session.app.refuse, files=True)
+    Uploads(gui, session.app.refuse, services.ships.expect)
     with client.atomic():
         top = gui.add_panel()
         pareto = top.add_tab("Pareto front")
         top.dock_right()
         top.set_width(session.dock_width)
         bottom = gui.add_panel()
-        design, charts, compare, whatif = (
-            bottom.add_tab(title) for title in ("Design", "Charts", "Compare", "What-if")
-        )
+        # a browser opens the first tab: that of the ship where one is being brought in
+        titles = ["Design", "Charts", "Compare", "What-if"]
+        titles.insert(0 if session.app.ship.hull is not None else 4, "Your ship")
+        tabs = {title: bottom.add_tab(title) for title in titles}
         bottom.dock_below(top)
         RunControl(session, services.runs)
         ParallelBrushes(session)
@@ -89,14 +93,16 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
             Scrubber(session, gui)
             ParetoPicking(session, designs, chart, gui)
             ToolbarView(session, designs, gui, client)
-        with design:
+        with tabs["Design"]:
             DesignView(session, designs, gui)
-        with charts:
+        with tabs["Charts"]:
             ChartsView(session, designs, gui, chart_tabs())
-        with compare:
+        with tabs["Compare"]:
             CompareView(session, designs, gui)
-        with whatif:
+        with tabs["What-if"]:
             WhatIfView(session, services, gui)
+        with tabs["Your ship"]:
+            ShipView(session, services.ships, services.runs, gui)
         with pareto:
             you = Slot(gui)
     SceneView(session, designs, client)

@@ -2,9 +2,9 @@
 
 viser 1.1.1 trusts its clients: a message may set any attribute of a widget's state (its limits, its callbacks), a value
 out of range or NaN reaches callbacks, 3.5 becomes 3 on a whole-number widget, a dropdown takes words that are no
-option, and an upload has no limit. Here one handler stands before viser's own: it lets through a new value that the
-widget itself could have produced, and refuses the rest in words. The page has no uploads, forms or share tunnels, so
-their messages are not listened to at all.
+option. Here one handler stands before viser's own: it lets through a new value that the widget itself could have
+produced, and refuses the rest in words. The page has no forms, and the shared widgets take no files: their messages are
+not listened to at all. Files that a browser's own widgets take are explorer/server/uploads.py's matter.
 
 This leans on private facts of viser 1.1.1; the version is pinned and tests/faults/test_page_guard.py fails when they
 change.
@@ -22,20 +22,17 @@ from viser import _messages
 from hpsop_core.errors import InputError
 
 MOST_CHARACTERS = 10_000
-_UNUSED = (
-    _messages.FileTransferStartUpload,
-    _messages.FileTransferPart,
-    _messages.GuiFormSubmitMessage,
-    _messages.GuiFormDirtyMessage,
-)
+_FORMS = (_messages.GuiFormSubmitMessage, _messages.GuiFormDirtyMessage)
+_FILES = (_messages.FileTransferStartUpload, _messages.FileTransferPart)
 
 
-def guard(gui: viser.GuiApi, refuse: Callable[[int, str], None]) -> None:
+def guard(gui: viser.GuiApi, refuse: Callable[[int, str], None], files: bool = False) -> None:
     """Check every message to the widgets of ``gui`` (the server's or one client's) before viser acts on it.
 
     Args:
         gui: whose widgets.
         refuse: told (client id, why) of what was refused; must not block.
+        files: whether these widgets take files, which ``Uploads`` then bounds.
     """
     interface = gui._websock_interface
     pass_on: Callable[[Any, Any], Awaitable[None]] = gui._handle_gui_updates
@@ -49,13 +46,14 @@ def guard(gui: viser.GuiApi, refuse: Callable[[int, str], None]) -> None:
         except InputError as error:
             refuse(int(client_id), str(error))
             # what was refused must not stay on that browser's screen
-            interface.queue_message(_messages.GuiUpdateMessage(message.uuid, {"value": widget.value}))
+            if not isinstance(widget, viser.GuiUploadButtonHandle):
+                interface.queue_message(_messages.GuiUpdateMessage(message.uuid, {"value": widget.value}))
             return
         await pass_on(client_id, message)
 
     interface.unregister_handler(_messages.GuiUpdateMessage, gui._handle_gui_updates)
     interface.register_handler(_messages.GuiUpdateMessage, handle)
-    for kind in _UNUSED:
+    for kind in _FORMS if files else (*_FORMS, *_FILES):
         interface.unregister_handler(kind)
 
 
@@ -70,6 +68,8 @@ def check_update(widget: Any, updates: Any) -> None:
         InputError: anything but one new value that the widget itself could have produced.
     """
     label = str(getattr(widget, "label", "") or "widget")
+    if isinstance(widget, viser.GuiUploadButtonHandle):
+        raise InputError(f"{label}: choose a file with the page's own button")
     if not isinstance(updates, dict) or set(updates) != {"value"}:
         raise InputError(f"{label}: only its value can be changed from a browser")
     value, now = updates["value"], widget.value

@@ -3,10 +3,12 @@
 from __future__ import annotations
 
 from dataclasses import dataclass
+from typing import Protocol
 
 from explorer.services.designs import Designs
 from explorer.services.display import Display
 from explorer.services.library import RunLibrary
+from explorer.services.own_ships import Desk, OwnShips
 from explorer.services.runs import Runs
 
 
@@ -17,13 +19,24 @@ class Services:
     Attributes:
         designs: numbers, curves, shapes and fields of a design.
         runs: the run on display and the folder of runs.
+        ships: a ship of the user's own, read and made the case.
     """
 
     designs: Designs
     runs: Runs
+    ships: OwnShips
+
+    def close(self) -> None:
+        """Leave no process behind."""
+        self.ships.close()
+        self.runs.close()
 
 
-def open_services(display: Display, library: RunLibrary, workers: int | None = None) -> Services:
+class Page(Display, Desk, Protocol):
+    """The page's state, as services see it."""
+
+
+def open_services(display: Page, library: RunLibrary, workers: int | None = None) -> Services:
     """Services that show on ``display`` what changes.
 
     Args:
@@ -32,4 +45,5 @@ def open_services(display: Display, library: RunLibrary, workers: int | None = N
         workers: local processes of a run; all cores by default.
     """
     designs = Designs(display)
-    return Services(designs, Runs(display, designs, library, workers))
+    ships = OwnShips(display, library.folder / "ships")
+    return Services(designs, Runs(display, designs, library, workers), ships)

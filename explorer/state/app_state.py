@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 import threading
 from collections.abc import Callable
 from dataclasses import dataclass, field
@@ -10,9 +11,11 @@ from typing import Any, Protocol
 from explorer.server.worker import LatestWorker
 from explorer.state.draft import Draft
 from explorer.state.hub import Hub
+from explorer.state.own_ship import OwnShip
 from explorer.state.run_picture import RunPicture
 from explorer.state.shown import Shown
 from hpsop_core.case.case import Case
+from hpsop_core.errors import HpsopError
 
 _MOST_REMEMBERED = 50
 
@@ -45,6 +48,7 @@ class AppState:
         memory: what a reload brings back, by the browser's own name; the latest is the last.
         doings: who did what to the run last, for people.
         asked_to_delete: the run of the library that somebody is being asked about, or "".
+        ship: a ship of the user's own on its way to a case.
     """
 
     draft: Draft
@@ -57,6 +61,7 @@ class AppState:
     on_remember: Callable[[], None] | None = None
     doings: str = ""
     asked_to_delete: str = ""
+    ship: OwnShip = field(default_factory=OwnShip)
 
     # ---- browsers --------------------------------------------------------------------------------------------------
     def join(self, client_id: int, watcher: Watcher) -> None:
@@ -124,20 +129,38 @@ class AppState:
             first: the design that everybody sees first; asked only when it is another run.
         """
         with self.lock:
-            replaced = picture.name != self.picture.name
+            before = self.picture
+            replaced = picture.name != before.name or (not picture.name and another_ship(picture.case, before.case))
             self.picture = picture
             watchers = list(self.sessions.values())
         self.hub.changed("run")
-        for watcher in watchers:
-            if replaced:
-                watcher.leave_run(first())
-            else:
+        if not replaced:
+            for watcher in watchers:
                 watcher.hub.changed("run")
+            return
+        try:
+            shown, why = first(), ""
+        except HpsopError as error:
+            # what was shown before is of another run: better nothing than that
+            shown, why = None, str(error)
+        for watcher in watchers:
+            watcher.leave_run(shown)
+            if why:
+                watcher.notify("The initial design has no numbers", why, "red")
 
     def ask_to_delete(self, name: str) -> None:
         """Ask whether this run of the library is to be deleted, or no longer for ""."""
         self.asked_to_delete = name
         self.tell_all("library")
+
+    # ---- a ship of the user's own --------------------------------------------------------------------------------
+    def change_ship(self, **changes: Any) -> OwnShip:
+        """Change something of the ship that is being brought in; returns it as it is then."""
+        with self.lock:
+            self.ship = dataclasses.replace(self.ship, **changes)
+            ship = self.ship
+        self.tell_all("ship")
+        return ship
 
     # ---- the case being set up -------------------------------------------------------------------------------------
     def drafted(self) -> Case:
@@ -161,3 +184,8 @@ class AppState:
         if whole:
             self.hub.changed("settings")
         self.tell_all("draft")
+
+
+def another_ship(case: Case, other: Case) -> bool:
+    """Whether two cases have other parents: no design that was shown of the one stands for the other."""
+    return (case.hull, case.propeller) != (other.hull, other.propeller)

@@ -9,18 +9,25 @@ import numpy as np
 from hpsop_core.charts.axis import Axis
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.sheet import Placed, sheet_svg
-from hpsop_core.charts.style import PRINT
+from hpsop_core.charts.style import PRINT, Style
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.hull.input import HullFile, ShipTable
+from hpsop_core.geometry.hull.input.deviations import section_deviations
 from hpsop_core.geometry.propeller.input import UnderstoodPropeller
 from hpsop_core.geometry.propeller.sections import half_thickness, mean_line
 from hpsop_core.typing_aliases import Array, IntArray
 
 MOST_STATIONS = 11
+# Readings further off than this part of the breadth are marked: 5 cm on a Panamax ship, a line's width on the plan.
+NOTED_DEVIATION = 0.0015
 BLADE_SECTIONS = (0.3, 0.5, 0.7, 0.9)
 _WIDTH, _HEIGHT = 1000.0, 760.0
-_SURFACE, _GIVEN = "compromise", "knee"
+_SURFACE, _GIVEN, _OFF = "selected", "knee", "published"
 _MARGINS = (50.0, 14.0, 8.0, 36.0)
+_RADIAL_COLUMNS = (
+    (("pitch_ratio", "P/D", _SURFACE), ("chord_ratio", "c/D", "knee")),
+    (("thickness_ratio", "t/c", _SURFACE), ("camber_ratio", "f/c", "knee"), ("rake_ratio", "rake/D", "front")),
+)
 
 
 def hull_sheet(file: HullFile) -> str:
@@ -69,8 +76,12 @@ def _chosen(table: ShipTable, low: float, high: float) -> IntArray:
     return np.asarray(inside[np.unique(np.round(np.linspace(0, len(inside) - 1, MOST_STATIONS)).astype(int))])
 
 
-def body_plan(hull: Hull, table: ShipTable, width: float, height: float) -> Plot:
-    """Sections of the surface at stations of the file, with the file's readings there, at equal scales."""
+def body_plan(hull: Hull, table: ShipTable, width: float, height: float, style: Style = PRINT) -> Plot:
+    """Sections of the surface at stations of the file, with the file's readings there, at equal scales.
+
+    A reading in the water that the surface leaves by more than ``NOTED_DEVIATION`` of the breadth is marked with its
+    distance; the topsides are no part of any number and follow the sheer only.
+    """
     bottom, top = float(min(table.z[0], 0.0)), float(table.z[-1])
     wide, high = width - _MARGINS[0] - _MARGINS[1], height - _MARGINS[2] - _MARGINS[3]
     half = float(np.max(table.y))
@@ -78,7 +89,7 @@ def body_plan(hull: Hull, table: ShipTable, width: float, height: float) -> Plot
     low = bottom - 0.04 * (top - bottom)
     plot = Plot(
         width, height, Axis("half-breadth [m]", (-0.5 * wide / scale, 0.5 * wide / scale)),
-        Axis("above the baseline [m]", (low, low + high / scale), 5), margins=_MARGINS, style=PRINT,
+        Axis("above the baseline [m]", (low, low + high / scale), 5), margins=_MARGINS, style=style,
     )  # fmt: skip
     ends = [hull.parent.extent(name) for name in hull.parent.underwater]
     first, last = min(e[0] for e in ends), max(e[1] for e in ends)
@@ -92,13 +103,22 @@ def body_plan(hull: Hull, table: ShipTable, width: float, height: float) -> Plot
         for k in indices:
             positive = np.flatnonzero(table.y[k] > 0.0)
             plot.dots(side * table.y[k, positive], table.z[positive], 1.5, _GIVEN)
+        _mark_deviations(plot, hull, table, indices, side)
     plot.horizontal(hull.draft, "guide")
     plot.vertical(0.0, "guide")
     plot.mark(0.0, hull.parent.shaft_height, "plus", 5.0, "open ink")
     return plot
 
 
-def profile(hull: Hull, width: float, height: float) -> Plot:
+def _mark_deviations(plot: Plot, hull: Hull, table: ShipTable, indices: IntArray, side: float) -> None:
+    for k, distances in zip(indices, section_deviations(hull, table, indices), strict=True):
+        wet = table.z <= hull.draft * (1.0 + 1e-9)
+        for level in np.flatnonzero(wet & (distances > NOTED_DEVIATION * hull.breadth)):
+            words = f"{1e3 * distances[level]:.3g} mm off at x {table.x[k]:.5g} m, z {table.z[level]:.4g} m"
+            plot.mark(side * table.y[k, level], table.z[level], "square", 4.0, f"open {_OFF}", title=words)
+
+
+def profile(hull: Hull, width: float, height: float, style: Style = PRINT) -> Plot:
     """Outlines of the fitted patches from the side."""
     lines: list[Array] = []
     along, across = np.linspace(0.0, 1.0, 201), np.linspace(0.0, 1.0, 41)
@@ -114,7 +134,7 @@ def profile(hull: Hull, width: float, height: float) -> Plot:
         Axis("x from AP [m]", _wider(x0, x1)),
         Axis("z [m]", _wider(z0, z1), 5),
         margins=_MARGINS,
-        style=PRINT,
+        style=style,
     )
     for line in lines:
         plot.line(line[:, 0], line[:, 2], f"{_SURFACE} thin")
@@ -125,7 +145,7 @@ def profile(hull: Hull, width: float, height: float) -> Plot:
     return plot
 
 
-def areas(hull: Hull, table: ShipTable, width: float, height: float) -> Plot:
+def areas(hull: Hull, table: ShipTable, width: float, height: float, style: Style = PRINT) -> Plot:
     """Sectional areas of the surface, and of the readings by the trapezoidal rule."""
     measured = hull.hydrostatics
     below = np.append(table.z[table.z < table.draft], table.draft)
@@ -136,7 +156,7 @@ def areas(hull: Hull, table: ShipTable, width: float, height: float) -> Plot:
     )
     plot = Plot(
         width, height, Axis("x from AP [m]", x), Axis("area of both sides [m²]", (0.0, 1.08 * top), 5),
-        margins=_MARGINS, style=PRINT,
+        margins=_MARGINS, style=style,
     )  # fmt: skip
     plot.line(measured.sectional_area_x, measured.sectional_area, _SURFACE, name="surface")
     plot.dots(table.x, own, 2.0, _GIVEN, name="readings")
@@ -151,17 +171,15 @@ def _wider(low: float, high: float, part: float = 0.04) -> tuple[float, float]:
 
 def propeller_sheet(told: UnderstoodPropeller) -> str:
     """Expanded outline, sections, and the columns over the radius with the table's rows as dots, as one SVG sheet."""
-    columns = [
-        (("pitch_ratio", "P/D", "compromise"), ("chord_ratio", "c/D", "knee")),
-        (("thickness_ratio", "t/c", "compromise"), ("camber_ratio", "f/c", "knee"), ("rake_ratio", "rake/D", "front")),
-    ]
-    titles = [", ".join(word for _, word, _ in column) for column in columns]
+    titles = [", ".join(word for _, word, _ in column) for column in _RADIAL_COLUMNS]
     charts = [
-        Placed(_outline(told, 480.0, 340.0), 10.0, 50.0, "expanded outline, leading edge to the left; dots: the file"),
+        Placed(
+            blade_outline(told, 480.0, 340.0), 10.0, 50.0, "expanded outline, leading edge to the left; dots: the file"
+        ),
         Placed(_blade_sections(told, 480.0, 340.0), 505.0, 50.0, "sections, leading edge to the left"),
         *(
-            Placed(_columns(told, column, title, 480.0, 320.0), 10.0 + 495.0 * k, 420.0, title)
-            for k, (column, title) in enumerate(zip(columns, titles, strict=True))
+            Placed(radial_columns(told, k, 480.0, 320.0), 10.0 + 495.0 * k, 420.0, title)
+            for k, title in enumerate(titles)
         ),
     ]
     words = (
@@ -187,7 +205,8 @@ def _equal_scales(x: Sequence[float], y: Sequence[float], width: float, height: 
     return Axis("along the section / D", limits[0]), Axis("r / D", limits[1], 5)
 
 
-def _outline(told: UnderstoodPropeller, width: float, height: float) -> Plot:
+def blade_outline(told: UnderstoodPropeller, width: float, height: float, style: Style = PRINT) -> Plot:
+    """The expanded outline, leading edge to the left, with the table's rows."""
     radius = _radii(told)
     at, rows = told.table.at(radius), told.table
     # A skew angle is an arc r theta along the section's own helix, r theta / cos(phi), here over D.
@@ -196,7 +215,7 @@ def _outline(told: UnderstoodPropeller, width: float, height: float) -> Plot:
     edges = [middle + 0.5 * sign * at.chord_ratio for sign in (-1.0, 1.0)]
     ends = float(min(edge.min() for edge in edges)), float(max(edge.max() for edge in edges))
     x, y = _equal_scales(ends, (0.5 * told.hub_ratio, 0.5), width, height)
-    plot = Plot(width, height, x, y, margins=_MARGINS, style=PRINT)
+    plot = Plot(width, height, x, y, margins=_MARGINS, style=style)
     plot.line(middle, 0.5 * radius, "soft thin", name="mid-chord")
     for edge, sign in zip(edges, (-1.0, 1.0), strict=True):
         plot.line(edge, 0.5 * radius, _SURFACE, name="edge")
@@ -221,16 +240,17 @@ def _blade_sections(told: UnderstoodPropeller, width: float, height: float) -> P
     return plot
 
 
-def _columns(
-    told: UnderstoodPropeller, columns: Sequence[tuple[str, str, str]], title: str, width: float, height: float
-) -> Plot:
+def radial_columns(told: UnderstoodPropeller, which: int, width: float, height: float, style: Style = PRINT) -> Plot:
+    """Columns over the radius: 0 pitch and chord, 1 thickness, camber and rake; dots are the table's rows."""
+    columns = _RADIAL_COLUMNS[which]
+    title = ", ".join(word for _, word, _ in columns)
     radius = _radii(told)
     at = told.table.at(radius)
     values = np.concatenate([getattr(at, name) for name, _, _ in columns])
     low, high = _wider(min(0.0, float(values.min())), float(values.max()))
     plot = Plot(
         width, height, Axis("r/R", (0.95 * told.hub_ratio, 1.02)), Axis(title, (low, high), 5),
-        margins=_MARGINS, style=PRINT,
+        margins=_MARGINS, style=style,
     )  # fmt: skip
     for name, word, role in columns:
         plot.line(radius, getattr(at, name), role, name=word)

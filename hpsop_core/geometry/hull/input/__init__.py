@@ -5,6 +5,7 @@ options            what a user states (Axes, ReadOptions); what every table read
 tables             columns (names in use) · cells (numbers, units) · long_table · matrix_table -> ship_table
 meshes, surfaces   mesh (STL OBJ PLY OFF GLB) · rhino (3dm) · cad (STEP, IGES) -> triangles (ship axes) -> slices
 after reading      checks (the table) · surface_checks (the fitted surface) · understood (what is told)
+and then           normalised (the table as text that needs no understanding) · deviations (reading by reading)
 door               read_hull: all of it
 """
 
@@ -17,6 +18,7 @@ from hpsop_core.geometry.hull.input.door import (
     read_table,
     table_from_text,
 )
+from hpsop_core.geometry.hull.input.normalised import normalised_options, normalised_text
 from hpsop_core.geometry.hull.input.options import UNITS, Axes, ReadOptions
 from hpsop_core.geometry.hull.input.ship_table import ShipTable
 from hpsop_core.geometry.hull.input.understood import UnderstoodHull
@@ -29,6 +31,8 @@ __all__ = [
     "ShipTable",
     "UnderstoodHull",
     "hull_from_table",
+    "normalised_options",
+    "normalised_text",
     "parent_hull_from_offsets",
     "parent_hull_from_stl",
     "read_hull",

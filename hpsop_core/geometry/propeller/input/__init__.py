@@ -1,4 +1,8 @@
-"""A user's own propeller from a file: columns (names in use), radial_csv (the reader), understood (what is told)."""
+"""A user's own propeller from a file.
+
+Columns (names in use), radial_csv (the reader), understood (what is told), normalised (the table as text that needs no
+understanding).
+"""
 
 from hpsop_core.geometry.propeller.input.columns import COLUMNS
 from hpsop_core.geometry.propeller.input.radial_csv import (
