@@ -125,7 +125,7 @@ class ShipView:
     def _rested(self, name: str, serial: int, why: str) -> None:
         if self._typed.get(name) == serial:
             self._session.notify("Not accepted", why, "red")
-            self._follow(self._app.ship, name)
+            self._show(name, _said(self._app.ship, name))
 
     def _on_make(self, _event: viser.GuiEvent[Any]) -> None:
         self._app.worker.every(self._adopt)
@@ -174,15 +174,17 @@ class ShipView:
 
     def _follow(self, ship: OwnShip, name: str) -> None:
         """A field shows what was said; what somebody is typing there and means the same stays as it is typed."""
-        field, said = self._fields[name], _said(ship, name)
+        said = _said(ship, name)
         try:
-            shown = length_from_text(name, field.value)
+            shown = length_from_text(name, self._fields[name].value)
         except InputError:
-            if self._typed.get(name):
-                return
-            shown = None
+            # taken back when the typing has rested
+            return
         if shown != said:
-            set_value(field, "" if said is None else f"{said:.10g}")
+            self._show(name, said)
+
+    def _show(self, name: str, said: float | None) -> None:
+        set_value(self._fields[name], "" if said is None else f"{said:.10g}")
 
 
 def length_from_text(name: str, text: object) -> float | None:

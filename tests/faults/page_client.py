@@ -4,8 +4,11 @@ from __future__ import annotations
 
 import http.client
 import socket
+import time
+from typing import Any
 from urllib.parse import urlsplit
 
+import msgspec
 import viser
 from websockets.sync.client import ClientConnection, connect
 
@@ -59,3 +62,47 @@ def fetch(explorer: Explorer, path: str, **headers: str) -> tuple[int, dict[str,
         return answer.status, {name.lower(): value for name, value in answer.getheaders()}, answer.read()
     finally:
         connection.close()
+
+
+class Hostile:
+    """A program that speaks viser's protocol and says what no browser of ours would."""
+
+    def __init__(self, explorer: Explorer) -> None:
+        known = set(explorer.state.sessions)
+        self._explorer = explorer
+        self.socket = connect_as(explorer, f"http://127.0.0.1:{explorer.server.get_port()}")
+        camera = {
+            "type": "ViewerCameraMessage",
+            "wxyz": (1.0, 0.0, 0.0, 0.0),
+            "position": (1.0, 1.0, 1.0),
+            "fov": 1.0,
+            "near": 0.1,
+            "far": 100.0,
+            "look_at": (0.0, 0.0, 0.0),
+            "up_direction": (0.0, 0.0, 1.0),
+            "image_height": 100,
+            "image_width": 100,
+        }
+        self.send(camera)
+        give_up = time.monotonic() + 30.0
+        while not (fresh := set(explorer.state.sessions) - known) and time.monotonic() < give_up:
+            time.sleep(0.02)
+        self.session = explorer.state.sessions[fresh.pop()]
+        self.told: list[str] = []
+        self.session.notify = lambda title, body, color: self.told.append(body)
+
+    def send(self, message: dict[str, Any]) -> None:
+        self.socket.send(msgspec.msgpack.encode(message))
+
+    def update(self, widget: Any, **updates: Any) -> None:
+        self.send({"type": "GuiUpdateMessage", "uuid": widget._impl.uuid, "updates": updates})
+
+    def refused(self, widget: Any, **updates: Any) -> str:
+        """The notification that follows such a message."""
+        before = len(self.told)
+        self.update(widget, **updates)
+        give_up = time.monotonic() + 10.0
+        while len(self.told) == before:
+            assert time.monotonic() < give_up, f"nobody was told about {updates}"
+            time.sleep(0.01)
+        return self.told[-1]

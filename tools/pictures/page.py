@@ -29,8 +29,21 @@ _HIDE = ".mantine-Notifications-root{display:none!important}"
 _LARGEST = 245_000
 # what docs/page.md and the README show
 _DOCS = frozenset(
-    {"ready", "running", "finished", "compare", "waves", "pressure", "propeller-pressure", "dark", "charts"}
+    {
+        "ready",
+        "running",
+        "finished",
+        "compare",
+        "waves",
+        "pressure",
+        "propeller-pressure",
+        "dark",
+        "charts",
+        "your-ship",
+    }
 )
+_SHIP = Path("tests") / "data" / "hulls" / "s60_cb060.csv"
+_SHIP_LENGTH = 121.92
 _GAP = 14
 _SIZES = {"": (1366, 768), "-large": (1920, 1080)}
 
@@ -60,6 +73,10 @@ class Photographer:
         """Choose a tab of a panel."""
         self._page.get_by_role("tab", name=name, exact=True).first.click()
         time.sleep(pause)
+
+    def button(self, name: str) -> None:
+        """Press one of viser's own buttons."""
+        self._page.get_by_role("button", name=name, exact=True).click()
 
     def take(self, name: str) -> None:
         """Save the page as a PNG of at most 245 kB."""
@@ -211,6 +228,20 @@ def _for_the_docs(camera: Photographer) -> None:
     camera.charts(("lines", "resistance", "open_water", "thrust", "convergence", "parallel"), 3)
 
 
+def _your_ship(explorer: Explorer, camera: Photographer) -> None:
+    """Series 60 from its published table, understood, and made the case."""
+    ships = explorer.services.ships
+    ships.bring_hull(_SHIP.name, _SHIP.read_bytes())
+    ships.say(length=_SHIP_LENGTH)
+    _wait(lambda: explorer.state.ship.read is not None and not explorer.state.ship.reading, 60.0)
+    camera.resize(1366, 1400)
+    camera.tab("Your ship")
+    camera.button("Make it the case")
+    _wait(lambda: explorer.state.picture.case.initial.length == _SHIP_LENGTH, 60.0)
+    time.sleep(12.0)
+    camera.take("your-ship")
+
+
 def _charts(camera: Photographer) -> None:
     for name in ("open_water", "resistance", "thrust", "lines", "parallel", "drivers", "convergence", "failures"):
         camera.press("tab", name, 3.0)
@@ -284,6 +315,7 @@ def main(argv: Sequence[str] | None = None) -> int:
                 explorer.services.runs.open(chosen, read_only=True)
                 time.sleep(6.0)
                 _for_the_docs(camera)
+                _your_ship(explorer, camera)
             elif shown is None:
                 _states_of_a_run(explorer, camera)
                 _failed_run(explorer, camera, Path(folder))

@@ -1,7 +1,7 @@
 """A user's own propeller from a file.
 
-Columns (names in use), radial_csv (the reader), understood (what is told), normalised (the table as text that needs no
-understanding).
+A file for a thought: columns (names in use), radial_csv (the reader), understood (what is told), normalised (the
+table as text that needs no understanding).
 """
 
 from hpsop_core.geometry.propeller.input.columns import COLUMNS
