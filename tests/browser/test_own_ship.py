@@ -110,20 +110,20 @@ def test_a_table_is_put_right_with_the_picture_following(page: Any, explorer: Ex
     assert read.understood.draft == pytest.approx(121.92 / 7.5 / 2.5)
     assert read.understood.block_coefficient == pytest.approx(0.600, abs=0.003)
     assert read.understood.buoyancy_centre_percent == pytest.approx(-1.5, abs=0.1)
-    page.wait_for_selector('text=/% of Lpp aft of midship/')
+    page.wait_for_selector("text=/% of Lpp aft of midship/")
     # said the wrong way round the ship turns, and the page says that its form speaks against it
     plan = page.locator("svg[data-chart=ship_body]").inner_html()
     press(page, "ship_say", "bow +x")
     press(page, "ship_say", "origin ap")
     wait_until(lambda: explorer.state.ship.options.axes.origin == "ap", 20, "the axes")
     understood(page, explorer)
-    page.wait_for_selector('text=/% of Lpp forward of midship/')
+    page.wait_for_selector("text=/% of Lpp forward of midship/")
     page.wait_for_selector('p.bad:has-text("as if its bow were aft")')
     page.wait_for_selector("[data-ship-picture=now] svg[data-chart=ship_body]")
     assert page.locator("svg[data-chart=ship_body]").inner_html() != plan
     press(page, "ship_say", "bow auto")
     press(page, "ship_say", "origin auto")
-    page.wait_for_selector('text=/% of Lpp aft of midship/')
+    page.wait_for_selector("text=/% of Lpp aft of midship/")
     # a smaller draught by the keyboard: the figures follow
     type_length(page, "Draft [m]", "5.2")
     page.wait_for_selector('text="121.92, 16.256, 5.2 m"')
