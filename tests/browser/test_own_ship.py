@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import choose_tab, press, session_of, small_case, wait_until
+from conftest import PATIENCE, choose_tab, press, session_of, small_case, wait_until
 
 from explorer.app import Explorer
 from explorer.server.security import free_port
@@ -80,6 +80,13 @@ def short_search(explorer: Explorer) -> None:
             draft.set("optimization", name, value)
 
     explorer.state.change_draft(change, whole=True)
+
+
+def run_to_its_end(page: Any, explorer: Explorer) -> None:
+    """Start the search and wait for its end."""
+    press(page, "run_start")
+    wait_until(lambda: explorer.state.picture.status in ("finished", "failed", "stopped"), 240, "the run")
+    assert explorer.state.picture.status == "finished", explorer.state.picture.message
 
 
 def make_it_the_case(page: Any, explorer: Explorer, name: str) -> None:
@@ -168,13 +175,14 @@ def test_the_table_s_ship_is_optimised_at_both_levels_and_exported(
     assert low < 6.5024 <= high + 1e-6
     assert (case.initial.length, case.initial.draft) == pytest.approx((121.92, 6.5024))
     short_search(explorer)
-    press(page, "run_start")
-    wait_until(lambda: explorer.state.picture.status == "finished", 240, "the run")
+    run_to_its_end(page, explorer)
     (path,) = explorer.folder.glob("s60-cb060-*.hpsop")
     run = open_run(path)
     assert {record.evaluation.level for record in run.front()} == {2}
     session = session_of(explorer)
+    choose_tab(page, "Design")
     press(page, "choose", "compromise")
+    choose_tab(page, "Your ship")
     wait_until(lambda: session.selected.kind == "run", 60, "the compromise")
     with page.expect_download(timeout=180_000) as waiting:
         press(page, "take_away")
@@ -219,8 +227,7 @@ def test_a_mesh_comes_in_and_is_optimised(page: Any, explorer: Explorer, mesh: P
     make_it_the_case(page, explorer, "someone-else-s")
     assert not any(text.startswith(("Not", "Set up with less")) for text in told), told
     short_search(explorer)
-    press(page, "run_start")
-    wait_until(lambda: explorer.state.picture.status == "finished", 240, "the run")
+    run_to_its_end(page, explorer)
     (path,) = explorer.folder.glob("someone-else-s-*.hpsop")
     assert {record.evaluation.level for record in open_run(path).front()} == {2}
 
@@ -232,7 +239,8 @@ def test_a_ship_lies_there_for_every_browser_and_after_a_reload(page: Any, explo
     assert length_field(page, "Lpp [m]").input_value() == "355"
 
 
-def test_the_command_s_argument_is_brought_in(tmp_path_factory: pytest.TempPathFactory, open_page: Any) -> None:
+def test_the_command_s_argument_is_brought_in(tmp_path_factory: pytest.TempPathFactory, chromium: Any) -> None:
+    """Its tab is the first and stands open."""
     own = Explorer(
         small_case(),
         port=free_port("127.0.0.1", 8480),
@@ -240,9 +248,13 @@ def test_the_command_s_argument_is_brought_in(tmp_path_factory: pytest.TempPathF
         workers=1,
         hull=hull_file(str(HULLS / "kvlcc2.csv")),
     )
+    context = chromium.new_context(viewport={"width": 1366, "height": 900})
     try:
-        page = open_page(own)
+        page = context.new_page()
+        page.set_default_timeout(PATIENCE)
+        page.goto(own.address)
         page.wait_for_selector('[data-ship-hull=good]:has-text("kvlcc2.csv")')
         page.wait_for_selector("svg[data-chart=ship_body]")
     finally:
+        context.close()
         own.close()
