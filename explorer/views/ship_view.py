@@ -82,7 +82,8 @@ class ShipView:
         session.gestures.on("act", "ship_blades", self._say_blades)
         session.gestures.on("act", "ship_away", lambda event: ships.put_away(event.arg))
         session.hub.on(("ship", "size"), self.draw)
-        self.draw()
+        # on the hub's own thread: a file may be understood at this very moment, and the older picture must not come last
+        session.worker.every(self.draw)
 
     # ---- gestures --------------------------------------------------------------------------------------------------
     def _arrived(self, event: viser.GuiEvent[Any], bring: Callable[[str, bytes], None]) -> None:
