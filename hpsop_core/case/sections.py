@@ -321,6 +321,9 @@ class OptimizationSection:
     )
     surface_checks: int = integer(12, 1, 1000, "designs of the front that are solved before the surface is learnt anew")
     surface_generations: int = integer(12, 2, 100000, "generations of level 2 after which the surface is learnt anew")
+    final_errors: bool = flag(
+        False, "at the run's end its front and the initial design are solved on a finer mesh, to state their errors"
+    )
     evaluation_time_limit: float = number(120.0, 0.1, 1e5, "an evaluation that takes longer is recorded as failed", "s")
 
     def __post_init__(self) -> None:

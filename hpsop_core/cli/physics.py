@@ -41,6 +41,7 @@ def add_parsers(commands: Any) -> None:
     evaluate.add_argument("case", metavar="CASE", help="a shipped case's name or a TOML file")
     add_level(evaluate)
     add_set(evaluate)
+    evaluate.add_argument("--errors", action="store_true", help="level 2: solve on a finer mesh too, to state errors")
     add_json(evaluate)
     evaluate.set_defaults(handler=_evaluate)
 
@@ -82,7 +83,14 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     from hpsop_core import evaluate
 
     case, variables = case_and_design(arguments.case, arguments.changes)
-    result = evaluate(case, variables, arguments.level)
+    if arguments.errors:
+        from hpsop_core.evaluation.errors import evaluate_with_errors
+
+        if arguments.level != 2:
+            raise InputError("evaluate: --errors solves on a finer mesh, which level 2 has; add --level 2")
+        result = evaluate_with_errors(case, variables or case.initial.variables, arguments.level, None)
+    else:
+        result = evaluate(case, variables, arguments.level)
     _tell_own_hull(case)
     if arguments.json:
         print_json(result.as_dict())
@@ -117,6 +125,9 @@ def print_evaluation(result: Evaluation) -> None:
     )
     if hull.booked_volume is not None:
         print(f"booked (affine form): CB {hull.booked_block_coefficient:.4f}, volume {hull.booked_volume:,.0f} m3")
+    if result.errors:
+        widths = ", ".join(f"{name} {width:.3g}" for name, width in result.errors.items())
+        print(f"half widths of 90 % intervals, SI units: {widths}")
     ship = [(item, item.value(result)) for item in SHIP]
     print("ship: " + ", ".join(f"{item.symbol.replace('_', ' ')} {item.text(result)} {item.unit}"
                                for item, value in ship if value is not None))  # fmt: skip

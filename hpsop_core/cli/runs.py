@@ -17,6 +17,7 @@ from hpsop_core.runs.controller import RunController, front_designs
 from hpsop_core.runs.learning import surface_words
 from hpsop_core.runs.reader import RunReader, open_run
 from hpsop_core.runs.records import DesignRecord, front_families, identifier
+from hpsop_core.runs.refinement import refine_front
 
 
 def add_parsers(commands: Any) -> None:
@@ -37,6 +38,9 @@ def add_parsers(commands: Any) -> None:
     show.add_argument("run", metavar="RUN.hpsop")
     show.add_argument("--front", action="store_true", help="the Pareto front")
     show.add_argument("--design", metavar="ID|initial|compromise", help="everything about one design (also: knee)")
+    show.add_argument(
+        "--refine", action="store_true", help="solve the last front on a finer mesh first, to state its errors"
+    )
     show.add_argument("--generation", type=int, metavar="N", help="at generation N instead of the last one")
     add_json(show)
     show.set_defaults(handler=_show)
@@ -89,6 +93,9 @@ def _optimize(arguments: argparse.Namespace) -> int:
 
 
 def _show(arguments: argparse.Namespace) -> int:
+    if arguments.refine:
+        progress = Progress(sys.stderr)
+        refine_front(arguments.run, lambda done, wanted: progress.line(f"on the finer mesh: {done} of {wanted}"))
     run = open_run(arguments.run)
     if arguments.front and arguments.design is not None:
         raise InputError("show: --front and --design are two questions; ask one of them")

@@ -60,20 +60,25 @@ def evaluate(
         if basis.level != level:
             raise ValueError(f"a reference of level {basis.level} cannot normalise level {level}")
         physics = compute(case, design, level, basis.basis, basis.surface)
-        result = _assessed(case, physics, basis, objectives, constraints)
+        result = assessed(case, physics, basis, objectives, constraints)
         return replace(result, elapsed=time.perf_counter() - started)
     except SolverFailure as failure:
         elapsed = time.perf_counter() - started
         return Failed(case.name, level, design, failure.stage, failure.reason, elapsed)
 
 
-def _assessed(
+def assessed(
     case: Case,
     physics: Physics,
     reference: Reference,
     objectives: Sequence[Objective],
     constraints: Sequence[Constraint],
 ) -> Ok:
+    """The evaluation of a design's physics.
+
+    Raises:
+        SolverFailure: a number is missing for one of the case's objectives.
+    """
     design, initial = physics.numbers, reference.initial
     values = {objective.name: objective.value(design, initial) for objective in objectives}
     known = {name: value for name, value in values.items() if value is not None}

@@ -9,7 +9,8 @@ from functools import lru_cache
 from hpsop_core.case.own_hull import own_table
 from hpsop_core.case.sections import HullSection
 from hpsop_core.case.variables import DesignVariables
-from hpsop_core.evaluation.levels import WaveAnswer, level_of
+from hpsop_core.errors import SolverFailure
+from hpsop_core.evaluation.levels import TRUTH, WaveAnswer, level_of
 from hpsop_core.geometry.hull.hull import Hull, ParentHull, load_parent_hull
 from hpsop_core.geometry.hull.input import HullFile, hull_from_table
 from hpsop_core.hydro.friction import ittc57_coefficient
@@ -113,6 +114,18 @@ def wave_answers(variables: HullVariables, level: int, froude_numbers: tuple[flo
     """
     hull = build_hull(variables)
     return solve_waves(hull, level, froude_numbers)
+
+
+@lru_cache(maxsize=512)
+def finer_wave_answers(variables: HullVariables, froude_numbers: tuple[float, ...]) -> tuple[WaveAnswer, ...]:
+    """As ``wave_answers`` at the true level, on its finer mesh.
+
+    Raises:
+        SolverFailure: the solver cannot give a number.
+    """
+    if TRUTH.solve_finer_waves is None:
+        raise SolverFailure("waves", "the true level has no finer mesh")
+    return TRUTH.solve_finer_waves(build_hull(variables), froude_numbers)
 
 
 def solve_waves(hull: Hull, level: int, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:

@@ -18,6 +18,10 @@ if TYPE_CHECKING:
     from hpsop_core.typing_aliases import Array
 
 
+REFINEMENT = 1.25
+"""Panels in each direction, over the working mesh's, with which final designs are solved again."""
+
+
 @dataclass(frozen=True)
 class WaveAnswer:
     """A solver's answer at one Froude number.
@@ -59,6 +63,7 @@ class Level:
         solve_waves: (hull, Froude numbers) -> an answer at each, before any calibration; raises SolverFailure.
         solve_propeller: (propeller, advance coefficients, section drag) -> its solution; raises SolverFailure.
         caution: what a reader must know of results that all have this level; "" for the true one.
+        solve_finer_waves: the same on ``REFINEMENT`` times as many panels in each direction; None where there are none.
         is_calibrated: whether a case may scale its wave resistance to the true level's at the initial design.
     """
 
@@ -68,6 +73,7 @@ class Level:
     solve_waves: Callable[[Hull, Sequence[float]], tuple[WaveAnswer, ...]]
     solve_propeller: Callable[[Propeller, Array, SectionDrag], PropellerSolution]
     is_calibrated: bool
+    solve_finer_waves: Callable[[Hull, Sequence[float]], tuple[WaveAnswer, ...]] | None = None
 
 
 def _thin_ship(hull: Hull, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:
@@ -86,11 +92,12 @@ def _lifting_line(propeller: Propeller, advance: Array, drag: SectionDrag) -> Pr
     return PropellerSolution(lifting_line.solve(propeller, advance, drag))
 
 
-def _rankine_panels(hull: Hull, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:
+def _rankine_panels(hull: Hull, froude_numbers: Sequence[float], refinement: float = 1.0) -> tuple[WaveAnswer, ...]:
     from hpsop_core.hydro.rankine import solver as rankine
 
     try:
-        result = rankine.solve(hull, froude_numbers)
+        settings = None if refinement == 1.0 else rankine.RankineSettings().refined(refinement)
+        result = rankine.solve(hull, froude_numbers, settings)
     except InputError as problem:
         # Froude numbers follow from a design's length at fixed speed: out of range is that design's failure.
         raise SolverFailure("rankine", str(problem)) from problem
@@ -98,6 +105,10 @@ def _rankine_panels(hull: Hull, froude_numbers: Sequence[float]) -> tuple[WaveAn
         WaveAnswer(point.wave_coefficient, point.wave_coefficient_pressure, point.sinkage, point.trim, result.warnings)
         for point in result.conditions
     )
+
+
+def _finer_rankine_panels(hull: Hull, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:
+    return _rankine_panels(hull, froude_numbers, REFINEMENT)
 
 
 def _blade_panels(propeller: Propeller, advance: Array, drag: SectionDrag) -> PropellerSolution:
@@ -125,6 +136,7 @@ TRUTH = Level(
     solve_waves=_rankine_panels,
     solve_propeller=_blade_panels,
     is_calibrated=False,
+    solve_finer_waves=_finer_rankine_panels,
 )
 """What a front is judged by."""
 

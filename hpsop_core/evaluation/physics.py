@@ -12,7 +12,13 @@ from hpsop_core.case.design_numbers import DesignNumbers, HullResult, PropellerR
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation.condition import condition_result
-from hpsop_core.evaluation.hull_answer import build_hull, hull_variables, resistance_point, wave_answers
+from hpsop_core.evaluation.hull_answer import (
+    build_hull,
+    finer_wave_answers,
+    hull_variables,
+    resistance_point,
+    wave_answers,
+)
 from hpsop_core.evaluation.hull_propulsion import (
     HoltropNumbers,
     holtrop_hull,
@@ -148,10 +154,7 @@ def compute(
     """
     hull_key = hull_variables(case.hull, variables, basis.displaced_volume)
     hull = build_hull(hull_key)
-    if case.conditions.speed == "fixed":
-        froude_numbers = tuple(speed / (case.constants.gravity * hull.length) ** 0.5 for speed in basis.speeds)
-    else:
-        froude_numbers = basis.froude_numbers
+    froude_numbers = _froude_numbers(case, hull, basis)
     propeller_key = propeller_variables(case.propeller, variables)
     told = None if surface is None else surface.answers(hull, variables, froude_numbers, propeller_key)
     if told is not None:
@@ -164,6 +167,27 @@ def compute(
     answer = propeller_answer(propeller_key, level, case.constants.propeller_roughness)
     waves = wave_answers(hull_key, level, froude_numbers)
     return _assembled(case, variables, level, basis, froude_numbers, hull, waves, answer)
+
+
+def compute_finer(case: Case, variables: DesignVariables, basis: Basis) -> Physics:
+    """A design's physics at the true level with its waves on the finer mesh.
+
+    Raises:
+        SolverFailure: as ``compute``.
+    """
+    hull_key = hull_variables(case.hull, variables, basis.displaced_volume)
+    hull = build_hull(hull_key)
+    froude_numbers = _froude_numbers(case, hull, basis)
+    propeller_key = propeller_variables(case.propeller, variables)
+    answer = propeller_answer(propeller_key, TRUTH.number, case.constants.propeller_roughness)
+    waves = finer_wave_answers(hull_key, froude_numbers)
+    return _assembled(case, variables, TRUTH.number, basis, froude_numbers, hull, waves, answer)
+
+
+def _froude_numbers(case: Case, hull: Hull, basis: Basis) -> tuple[float, ...]:
+    if case.conditions.speed == "fixed":
+        return tuple(speed / (case.constants.gravity * hull.length) ** 0.5 for speed in basis.speeds)
+    return basis.froude_numbers
 
 
 def _assembled(

@@ -82,7 +82,7 @@ def reference_for(case: Case, level: int) -> Reference:
     basis = basis_for(case, level)
     numbers = compute(case, case.initial.variables, level, basis).numbers
     check_engine(case, numbers)
-    return Reference(level, basis, _initial_numbers(basis.displaced_volume, numbers))
+    return Reference(level, basis, initial_numbers(basis.displaced_volume, numbers))
 
 
 def learnt(
@@ -101,7 +101,8 @@ def learnt(
     return replace(reference, surface=surface), asdict(surface.held_out)
 
 
-def _initial_numbers(volume: float, design: DesignNumbers) -> InitialNumbers:
+def initial_numbers(volume: float, design: DesignNumbers) -> InitialNumbers:
+    """What of the initial design normalises others; ``volume``: V0 in m3."""
     columns = {
         item.name: tuple(getattr(condition, item.name) for condition in design.conditions)
         for item in fields(ConditionResult)

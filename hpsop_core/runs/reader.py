@@ -296,7 +296,14 @@ class RunReader:
                     record = _record("evaluations", row)
                     evaluation = self._placed(content.document(row))
                     self._designs[number] = DesignRecord(number, record["origin"], record["generation"], evaluation)
-        return tuple(self._designs[number] for number in ids)
+        errors = self._errors()
+        return tuple(_with_errors(self._designs[number], errors.get(str(number))) for number in ids)
+
+    def _errors(self) -> dict[str, dict[str, float]]:
+        """Half widths by quantity, by the design's id, of designs that were solved on a finer mesh."""
+        with self._reading() as content:
+            found: dict[str, dict[str, float]] = json.loads(content.values().get("errors", "{}"))
+        return found
 
     def _placed(self, document: Mapping[str, Any]) -> Evaluation:
         """An evaluation with the bounds that it stands on, which files of earlier versions do not tell."""
@@ -430,6 +437,12 @@ class RunReader:
                 known: json.loads(text) for known, text in content.all_rows("reference")
             }
         return found.get(level)
+
+
+def _with_errors(record: DesignRecord, errors: Mapping[str, float] | None) -> DesignRecord:
+    if errors is None or not record.evaluation.ok:
+        return record
+    return dataclasses.replace(record, evaluation=dataclasses.replace(record.evaluation, errors=errors))
 
 
 def _surface_summary(values: Mapping[str, str], searched: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

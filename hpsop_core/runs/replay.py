@@ -11,7 +11,7 @@ import concurrent.futures
 import dataclasses
 import json
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Mapping
 from typing import Any, TypeVar
 
 from hpsop_core.errors import HpsopError, InputError
@@ -25,6 +25,7 @@ from hpsop_core.runs.events import RunEvent, RunSnapshot, State
 from hpsop_core.runs.learning import Learning
 from hpsop_core.runs.ledger import DivergedError, Ledger
 from hpsop_core.runs.records import variables_text
+from hpsop_core.runs.refinement import keep_errors, unrefined
 from hpsop_core.runs.schema import initial_id, software_versions
 from hpsop_core.runs.store import RunStore, StoreUnwritableError
 from hpsop_core.runs.tasks import Physics, failure_text, reference_task
@@ -157,6 +158,37 @@ class RunDriver:
                 # Only now: the first front shall be seen before the slower level has been compiled and computed.
                 needed = first is FAST and settings.level1_generations < search.generations
                 self._evaluate_initial(second.number, planned=needed)
+        if settings.final_errors:
+            self._refine(search.number)
+
+    def _refine(self, generation: int) -> None:
+        """Solve the last front and the initial design on a finer mesh, and keep their numbers' errors."""
+        last = self._store.generation(generation)
+        if self._physics.refine is None or last is None or last.level != TRUTH.number:
+            return
+        wanted = unrefined(self._store, last)
+        if not wanted:
+            return
+        reference = self._reference(TRUTH.number)
+        tasks = [
+            (number, Candidate(TRUTH.number, variables, "initial"), reference) for number, variables in wanted.items()
+        ]
+        errors: dict[int, Mapping[str, float]] = {}
+
+        def finished(number: int, candidate: Candidate, result: str) -> None:
+            errors[number] = json.loads(result)["errors"]
+
+        def paused(now: bool) -> None:
+            self._change_state("paused" if now else "running", "")
+
+        self._tell("state", reason="the front is solved on a finer mesh")
+        evaluator = BatchEvaluator(
+            self._ready_workers(), self._physics.refine, self._case, self._control, self._lost, self._physics.warm_up
+        )
+        complete = evaluator.run(tasks, finished, paused)
+        self._keep(lambda: keep_errors(self._store, errors))
+        if not complete:
+            raise _StoppedError
 
     def _is_known(self, search: TwoLevelSearch) -> bool:
         # A stop during the replay waits for its end: that takes seconds, and the snapshot is then worth something.

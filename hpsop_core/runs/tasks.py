@@ -52,6 +52,7 @@ class Physics:
         reference_from_dict: makes a reference from its ``as_dict``.
         warm_up: called once in each new worker and level, before evaluations are timed; None if there is no need.
         learn: called by the run itself with solved designs of level 2; None if nothing can be learnt.
+        refine: as ``evaluate`` at level 2, with the numbers' errors; None if they cannot be had.
     """
 
     evaluate: EvaluateFunction
@@ -59,6 +60,7 @@ class Physics:
     reference_from_dict: Callable[[Mapping[str, Any]], Any]
     warm_up: WarmUpFunction | None = None
     learn: LearnFunction | None = None
+    refine: EvaluateFunction | None = None
 
 
 def hydrodynamics() -> Physics:
@@ -67,7 +69,13 @@ def hydrodynamics() -> Physics:
     from hpsop_core.evaluation.evaluate import evaluate
     from hpsop_core.evaluation.reference import Reference, learnt, reference_for
 
-    return Physics(evaluate, reference_for, Reference.from_dict, _evaluate_initial, learnt)
+    return Physics(evaluate, reference_for, Reference.from_dict, _evaluate_initial, learnt, _evaluate_with_errors)
+
+
+def _evaluate_with_errors(case: Case, variables: DesignVariables, level: int, reference: Any) -> Evaluation:
+    from hpsop_core.evaluation.errors import evaluate_with_errors
+
+    return evaluate_with_errors(case, variables, level, reference)
 
 
 def _evaluate_initial(case: Case, level: int, reference: Any) -> None:
