@@ -271,8 +271,9 @@ class ConstantsSection:
     propeller_roughness: float = number(30e-6, 1e-6, 1e-3, "roughness of the blades (ITTC-78)", "m")
     wave_calibration: str = choice(
         "level2",
-        ("level2", "stated", "none"),
-        "level 1's wave resistance: scaled so that the initial design has its level-2 or the stated value, or not",
+        ("level2", "learnt", "stated", "none"),
+        "level 1's wave resistance: scaled so that the initial design has its level-2 or the stated value; learnt: "
+        "each form by a factor of its own, from a few dozen hulls solved at level 2; or as it is",
     )
     stated_wave_coefficients: tuple[float, ...] = numbers(
         (), 0.0, 0.02, "the initial design's wave coefficients, one a condition, for wave_calibration = stated"

@@ -4,9 +4,10 @@ The rooms, from the ground up: ``result`` (what an evaluation is), ``levels`` (t
 ``hull_answer`` and ``propeller_answer`` (what the solvers answer, remembered apart from each other),
 ``hull_propulsion`` (allowances, wake, thrust deduction and eta_R as the case wants them), ``shapes`` (hull and
 propeller of a design, V0), ``ship`` (weights, stability, engine, EEDI), ``condition`` (one operating condition),
-``gaussian_process`` and ``surface`` (what a learnt surface answers for the solvers),
-``physics`` (every number of a design, not normalised), ``reference`` (the initial design's, which normalise),
-``curves`` (what is drawn beyond an evaluation), ``evaluate``, which puts them together with the objectives and
+``gaussian_process`` and ``surface`` (what a learnt surface answers for the solvers), ``wave_correction`` (level 1
+taught by level 2), ``physics`` (every number of a design, not normalised), ``reference`` (the initial design's, which
+normalise), ``curves`` (what is drawn beyond an evaluation),
+``evaluate``, which puts them together with the objectives and
 constraints that ``case`` declares, ``errors`` (how sure they are, from a finer mesh), ``fields`` (the waves and the
 pressures of a design), and beside it what a towing tank and an open-water test are asked: ``resistance`` and
 ``open_water``, of a design or of a hull or propeller at hand.

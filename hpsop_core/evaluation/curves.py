@@ -66,6 +66,7 @@ def resistance_curve(
     key = hull_variables(case.hull, variables, basis.displaced_volume)
     waves = wave_answers(key, level, tuple(froude_numbers))
     constants = case.constants
+    calibration = basis.calibration_of(case, build_hull(key), variables)
     factors, _ = design_factors(case, variables, build_hull(key), basis, form_factor)
     return tuple(
         resistance_point(
@@ -76,7 +77,7 @@ def resistance_curve(
             density=constants.density,
             viscosity=constants.viscosity,
             factors=factors,
-            wave_calibration=basis.calibration_at(froude),
+            wave_calibration=calibration(froude),
         )
         for froude, wave in zip(froude_numbers, waves, strict=True)
     )

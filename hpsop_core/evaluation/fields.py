@@ -155,7 +155,7 @@ def waves(
         variables, froude, calibration = _variables(case, design), froude_number, 1.0
         if level_of(wanted) is FAST:
             basis = reference.basis if reference is not None else basis_for(case, wanted)
-            calibration = basis.calibration_at(froude)
+            calibration = basis.calibration_of(case, design_hull(case, variables), variables)(froude)
     hull = design_hull(case, variables)
     return _panel_waves(hull, froude) if level_of(wanted) is TRUTH else kelvin_waves(hull, froude, calibration, grid)
 

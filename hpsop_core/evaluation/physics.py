@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+from collections.abc import Callable
 from dataclasses import dataclass
 
 import numpy as np
@@ -39,6 +40,7 @@ from hpsop_core.evaluation.propeller_answer import (
 from hpsop_core.evaluation.shapes import initial_volume
 from hpsop_core.evaluation.ship import Loading, loading
 from hpsop_core.evaluation.surface import Surface
+from hpsop_core.evaluation.wave_correction import WaveCorrection, learn_correction, own_froude_numbers
 from hpsop_core.geometry.clearance import baseline_clearance, propeller_clearance
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.hydro.holtrop import HoltropHull
@@ -56,6 +58,7 @@ class Basis:
         froude_numbers: the case's.
         wave_calibration: factors on level 1's wave resistance at these Froude numbers; ones at level 2.
         holtrop: what Holtrop's formulas give for the initial design; None where the case does not use them.
+        correction: with wave_calibration = learnt, at level 1: what gives each hull factors of its own.
     """
 
     displaced_volume: float
@@ -63,10 +66,19 @@ class Basis:
     froude_numbers: tuple[float, ...]
     wave_calibration: tuple[float, ...]
     holtrop: HoltropNumbers | None = None
+    correction: WaveCorrection | None = None
 
     def calibration_at(self, froude_number: float) -> float:
         """The factor at any Froude number: linear between the conditions, constant outside."""
         return float(np.interp(froude_number, self.froude_numbers, self.wave_calibration))
+
+    def calibration_of(self, case: Case, hull: Hull, variables: DesignVariables) -> Callable[[float], float]:
+        """The factor of one hull over its Froude number, likewise between its own conditions."""
+        if self.correction is None:
+            return self.calibration_at
+        own = own_froude_numbers(case, hull, self.speeds)
+        factors = self.correction.factors(hull, variables, own)
+        return lambda froude_number: float(np.interp(froude_number, own, factors))
 
 
 def basis_for(case: Case, level: int) -> Basis:
@@ -82,6 +94,7 @@ def basis_for(case: Case, level: int) -> Basis:
         froude_numbers=case.froude_numbers,
         wave_calibration=_wave_calibration(case, level_of(level), volume),
         holtrop=_initial_holtrop(case, volume),
+        correction=_correction(case, level_of(level), volume),
     )
 
 
@@ -154,7 +167,7 @@ def compute(
     """
     hull_key = hull_variables(case.hull, variables, basis.displaced_volume)
     hull = build_hull(hull_key)
-    froude_numbers = _froude_numbers(case, hull, basis)
+    froude_numbers = own_froude_numbers(case, hull, basis.speeds)
     propeller_key = propeller_variables(case.propeller, variables)
     told = None if surface is None else surface.answers(hull, variables, froude_numbers, propeller_key)
     if told is not None:
@@ -177,17 +190,11 @@ def compute_finer(case: Case, variables: DesignVariables, basis: Basis) -> Physi
     """
     hull_key = hull_variables(case.hull, variables, basis.displaced_volume)
     hull = build_hull(hull_key)
-    froude_numbers = _froude_numbers(case, hull, basis)
+    froude_numbers = own_froude_numbers(case, hull, basis.speeds)
     propeller_key = propeller_variables(case.propeller, variables)
     answer = propeller_answer(propeller_key, TRUTH.number, case.constants.propeller_roughness)
     waves = finer_wave_answers(hull_key, froude_numbers)
     return _assembled(case, variables, TRUTH.number, basis, froude_numbers, hull, waves, answer)
-
-
-def _froude_numbers(case: Case, hull: Hull, basis: Basis) -> tuple[float, ...]:
-    if case.conditions.speed == "fixed":
-        return tuple(speed / (case.constants.gravity * hull.length) ** 0.5 for speed in basis.speeds)
-    return basis.froude_numbers
 
 
 def _assembled(
@@ -217,6 +224,7 @@ def _assembled(
         own = holtrop_numbers(ship, propeller.diameter, propeller.expanded_area_ratio, speeds, constants.viscosity)
         cautions += holtrop_warnings(ship, speeds, constants.gravity)
     propulsion = propulsion_factors(constants, block_coefficient, len(froude_numbers), own, basis.holtrop)
+    calibration = basis.calibration_of(case, hull, variables)
     conditions = tuple(
         condition_result(
             case,
@@ -228,7 +236,7 @@ def _assembled(
                 density=constants.density,
                 viscosity=constants.viscosity,
                 factors=resistance,
-                wave_calibration=basis.calibration_at(froude),
+                wave_calibration=calibration(froude),
             ),
             weight,
             factors,
@@ -296,6 +304,12 @@ def _centre_missed(hull: Hull, variables: DesignVariables) -> float:
     parent = hull.parent
     own = parent.hydrostatics.longitudinal_centre_of_buoyancy / parent.length + variables.buoyancy_centre_shift
     return abs(hull.hydrostatics.longitudinal_centre_of_buoyancy / hull.length - own)
+
+
+def _correction(case: Case, level: Level, volume: float) -> WaveCorrection | None:
+    if level.is_calibrated and case.constants.wave_calibration == "learnt":
+        return learn_correction(case, volume, case.speeds)
+    return None
 
 
 def _wave_calibration(case: Case, level: Level, volume: float) -> tuple[float, ...]:

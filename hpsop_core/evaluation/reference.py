@@ -13,6 +13,7 @@ from hpsop_core.evaluation.physics import Basis, basis_for, compute
 from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.evaluation.ship import check_engine, check_loading
 from hpsop_core.evaluation.surface import Surface, learn
+from hpsop_core.evaluation.wave_correction import WaveCorrection
 from hpsop_core.one_thread import one_blas_thread
 
 
@@ -51,6 +52,8 @@ class Reference:
         if stored.get("holtrop") is not None:
             holtrop = stored["holtrop"]
             stored["holtrop"] = HoltropNumbers(**{**holtrop, "wake_fractions": tuple(holtrop["wake_fractions"])})
+        if stored.get("correction") is not None:
+            stored["correction"] = WaveCorrection.from_dict(stored["correction"])
         basis: dict[str, Any] = {key: tuple(v) if isinstance(v, list) else v for key, v in stored.items()}
         return cls(
             level=data["level"],

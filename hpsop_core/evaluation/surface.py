@@ -108,7 +108,7 @@ class Surface:
                 return None
         answers = []
         for regression, froude in zip(self.waves, froude_numbers, strict=True):
-            logarithm, spread = regression.predict(_design_inputs(hull, variables, froude))
+            logarithm, spread = regression.predict(hull_inputs(hull, variables, froude))
             if float(spread[0]) > WAVE_DOUBT:
                 return None
             answers.append(WaveAnswer(math.exp(float(logarithm[0]))))
@@ -179,14 +179,14 @@ def _nodes() -> Array:
     return chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
 
 
-def _hull_inputs(length: float, breadth: float, draft: float, block: float, centre: float) -> list[float]:
+def _proportions(length: float, breadth: float, draft: float, block: float, centre: float) -> list[float]:
     return [length / breadth, breadth / draft, block, centre / length]
 
 
-def _design_inputs(hull: Hull, variables: DesignVariables, froude_number: float) -> Array:
+def hull_inputs(hull: Hull, variables: DesignVariables, froude_number: float) -> Array:
     """The numbers that a hull's waves depend on, without dimension."""
     form = hull.hydrostatics
-    own = _hull_inputs(
+    own = _proportions(
         hull.length, hull.breadth, hull.draft, form.block_coefficient, form.longitudinal_centre_of_buoyancy
     )
     return np.array([*own, froude_number, *_other_inputs(variables)])
@@ -196,7 +196,7 @@ def _solved_inputs(data: Mapping[str, Any], condition: int) -> Array:
     """The same of a solved design."""
     hull = data["hull"]
     names = ("length", "breadth", "draft", "block_coefficient", "longitudinal_centre_of_buoyancy")
-    own = _hull_inputs(*(hull[name] for name in names))
+    own = _proportions(*(hull[name] for name in names))
     froude_number = data["conditions"][condition]["froude_number"]
     return np.array([*own, froude_number, *_other_inputs(DesignVariables.from_dict(data["variables"]))])
 

@@ -31,6 +31,8 @@ _SPEED = {
 }
 _CALIBRATION = {
     "level2": "scaled by one factor a condition, so that the initial design has its level-2 value",
+    "learnt": "corrected towards level 2 by a smooth function of the form, learnt on a few dozen hulls of the design "
+    "space",
     "stated": "scaled by one factor a condition, so that the initial design has the wave coefficients stated in the "
     "case",
     "none": "used as Michell's integral gives it, which on a flat stern like the DTC's is several times too high",

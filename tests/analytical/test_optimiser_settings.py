@@ -295,8 +295,15 @@ def test_no_setting_is_forgotten_here() -> None:
         "mutation_probability", "mutation_eta", "seed", "constraint_handling", "penalty_factor", "handover_margin",
         "reseed_share", "keep_initial", "stagnation_window", "stagnation_tolerance",
     }  # fmt: skip
-    # The time limit is one of the workers (tests/faults/test_runs_faults.py), what is learnt on the way has tests of its
-    # own (tests/invariance/test_surface.py).
-    elsewhere = {"evaluation_time_limit", "surface", "surface_generations", "surface_sample", "surface_checks"}
+    # The time limit is one of the workers (tests/faults/test_runs_faults.py); what is learnt on the way and the errors
+    # at the end have tests of their own (tests/invariance/test_surface.py, test_final_errors.py).
+    elsewhere = {
+        "evaluation_time_limit",
+        "surface",
+        "surface_generations",
+        "surface_sample",
+        "surface_checks",
+        "final_errors",
+    }
     assert told | elsewhere == set(rules(OptimizationSection))
     assert {field.name for field in dataclasses.fields(OptimizationSection)} == set(rules(OptimizationSection))
