@@ -10,9 +10,10 @@ from pathlib import Path
 from typing import Any
 
 from hpsop_core.case.case import load_case
+from hpsop_core.cli.arguments import add_set, case_and_design
 from hpsop_core.cli.driving import INTERRUPTED, Progress, driven
 from hpsop_core.errors import InputError
-from hpsop_core.export.formats import FORMATS
+from hpsop_core.export.formats import FORMATS, USUAL_FORMATS
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.reader import open_run
 from hpsop_core.runs.records import identifier
@@ -23,11 +24,12 @@ CASE_NAME = "dtc-p4119-paper"
 def add_parsers(commands: Any) -> None:
     """Add the commands to the parser."""
     export = commands.add_parser("export", help="a design as CAD, meshes and tables")
-    export.add_argument("run", metavar="RUN.hpsop")
-    export.add_argument("--design", metavar="ID|initial|compromise", required=True, help="which (also: knee)")
+    export.add_argument("run", metavar="RUN.hpsop | CASE", help="a run file, or a case for its initial design")
+    export.add_argument("--design", metavar="ID|initial|compromise", help="which of a run's (also: knee)")
+    add_set(export)
     export.add_argument("--to", metavar="FOLDER", required=True, help="where; made if it is not there")
     export.add_argument(
-        "--formats", metavar="stl,glb,3dm,...", help=f"any of {','.join(FORMATS)}; all but step and iges by default"
+        "--formats", metavar="stl,glb,3dm,...", help=f"any of {','.join(FORMATS)}; {','.join(USUAL_FORMATS)} by default"
     )
     export.add_argument("--force", action="store_true", help="replace files in a folder that is not empty")
     export.set_defaults(handler=_export)
@@ -51,9 +53,34 @@ def _export(arguments: argparse.Namespace) -> int:
     from hpsop_core import export
 
     formats = None if arguments.formats is None else [w.strip() for w in arguments.formats.split(",") if w.strip()]
-    for file in export(open_run(arguments.run), identifier(arguments.design), arguments.to, formats, arguments.force):
+    if _is_run(arguments.run):
+        if arguments.design is None:
+            raise InputError(f"{arguments.run}: say which design of this run, --design ID|initial|compromise|knee")
+        if arguments.changes:
+            raise InputError(f"{arguments.run}: --set changes a case's design; a run's are as they are, leave it away")
+        files = export(open_run(arguments.run), identifier(arguments.design), arguments.to, formats, arguments.force)
+    else:
+        if arguments.design not in (None, "initial"):
+            raise InputError(
+                f"{arguments.run}: is a case, and --design {arguments.design} is of a run; leave it away for the "
+                "initial design, or name a run file"
+            )
+        case, variables = case_and_design(arguments.run, arguments.changes)
+        files = export(case, variables, arguments.to, formats, arguments.force)
+    for file in files:
         print(_with_size(file))
     return 0
+
+
+def _is_run(name: str) -> bool:
+    """A run file, whatever it is called, or what is called like one; everything else is a case."""
+    if name.endswith(".hpsop"):
+        return True
+    try:
+        with open(name, "rb") as file:
+            return file.read(15) == b"SQLite format 3"
+    except OSError:
+        return False
 
 
 def _report(arguments: argparse.Namespace) -> int:

@@ -1,17 +1,19 @@
 """CAD, meshes and tables of a design; called, it is ``export`` of the Python interface.
 
-* design_files: a design's files into a folder or an archive, all of them or none; formats: which there are
+* design_files: a design's files into a folder or an archive, all of them or none; formats: which there are; design:
+  what every writer gets
 * surfaces: NURBS; exchange: handed to geomdl, openNURBS and OpenCASCADE; rhino: 3DM; solids: STEP and IGES
 * meshes: STL and GLB; slivers: taken out of a mesh; lines: DXF
+* vtp: waves and pressures for ParaView; panel_files: GDF; pff: the propeller free format
 * tables, offsets: CSV
 
 ``hpsop_core.export(run, design, folder, formats=None, force=False)`` writes a design's files, all of them or none.
 
 Args:
-    run: the run that has it (``open_run``).
-    design: its id, "initial", "compromise" or "knee".
+    run: the run that has it (``open_run``), or a case (``load_case``).
+    design: its id, "initial", "compromise" or "knee"; of a case "initial" or variables, evaluated at level 2.
     folder: made if it is not there.
-    formats: any of ``formats.FORMATS``; all but step and iges by default.
+    formats: any of ``formats.FORMATS``; those that need no extra and no further solution by default.
     force: write into a folder that holds something already; files of the same name are replaced, others stay.
 
 Returns:
@@ -31,14 +33,16 @@ from types import ModuleType
 from typing import TYPE_CHECKING
 
 if TYPE_CHECKING:
+    from hpsop_core.case.case import Case
+    from hpsop_core.case.variables import DesignVariables
     from hpsop_core.runs.reader import RunReader
 
 
 class _Export(ModuleType):
     def __call__(
         self,
-        run: RunReader,
-        design: int | str,
+        run: RunReader | Case,
+        design: int | str | DesignVariables,
         folder: str | Path,
         formats: Sequence[str] | None = None,
         force: bool = False,

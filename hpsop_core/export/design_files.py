@@ -4,22 +4,22 @@ from __future__ import annotations
 
 import json
 import os
+import re
 import shutil
 import tempfile
 from collections.abc import Sequence
-from dataclasses import dataclass
 from pathlib import Path
-from typing import Any
 
 from hpsop_core.case.case import Case
-from hpsop_core.errors import InputError
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.errors import InputError, SolverFailure
+from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.levels import TRUTH
 from hpsop_core.evaluation.reference import Reference, reference_for
-from hpsop_core.evaluation.result import Evaluation
-from hpsop_core.evaluation.shapes import design_hull, design_propeller
+from hpsop_core.evaluation.result import Evaluation, Ok
 from hpsop_core.export import tables
+from hpsop_core.export.design import LeavingDesign, leaving_design
 from hpsop_core.export.formats import USUAL_FORMATS, checked_formats
-from hpsop_core.geometry.hull.hull import Hull
-from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.geometry.propeller.surface import EDGE_THICKNESS_RATIO
 from hpsop_core.runs.reader import RunReader
 from hpsop_core.version import __version__
@@ -45,6 +45,11 @@ _MEANING = {
     "design.step": "hull and propeller as a closed solid each, faces named; millimetres",
     "design.iges": "the same as IGES, manifold solids (entity 186); millimetres",
     "lines.dxf": "stations, waterlines, buttocks, profile (port side) and blade sections as 3D polylines",
+    "waves_N.vtp": "the water surface at condition N, for ParaView",
+    "pressure_hull_N.vtp": "pressures on the hull at condition N, of level 2",
+    "pressure_blades_N.vtp": "pressures on blades and hub at condition N, of level 2",
+    "hull.gdf": "panels below the waterline for seakeeping programs; origin amidships on the waterline",
+    "propeller.pff": "the blade's sections in the propeller free format; millimetres",
     "offsets.csv": "half-breadths; 'hpsop resistance --offsets offsets.csv' reads it again",
     "propeller.csv": "radial table; 'hpsop open-water --geometry propeller.csv' reads it again",
     "hydrostatics.csv": "hydrostatics and sectional areas",
@@ -54,25 +59,19 @@ _MEANING = {
 }
 
 
-@dataclass(frozen=True, eq=False)
-class _Design:
-    case: Case
-    evaluation: Evaluation
-    label: str
-    document: dict[str, Any]
-    reference: Reference
-    hull: Hull
-    propeller: Propeller
-
-
 def export_design(
-    run: RunReader, design: int | str, folder: str | Path, formats: Sequence[str] | None = None, force: bool = False
+    run: RunReader | Case,
+    design: int | str | DesignVariables,
+    folder: str | Path,
+    formats: Sequence[str] | None = None,
+    force: bool = False,
 ) -> tuple[Path, ...]:
     """Write a design's files into a folder: all of them, or none.
 
     Args:
-        run: the run that has it.
-        design: its id, "initial", "compromise" or "knee".
+        run: the run that has it, or a case.
+        design: of a run its id, "initial", "compromise" or "knee"; of a case "initial" or variables, evaluated at
+            level 2.
         folder: made if it is not there.
         formats: any of ``formats.FORMATS``; ``formats.USUAL_FORMATS`` by default.
         force: write into a folder that holds something already; files of the same name are replaced, others stay.
@@ -85,19 +84,39 @@ def export_design(
         SolverFailure: the form or its resistance curve cannot be computed.
     """
     wanted = checked_formats(USUAL_FORMATS if formats is None else formats)
+    target = Path(folder)
+    if isinstance(run, Case):
+        _check_target(target, force)
+        return _written(_of_case(run, design), target, wanted)
+    if isinstance(design, DesignVariables):
+        raise InputError("export: a run's design is named by its id, initial, compromise or knee, not by variables")
     run.check_ship()
     record = run.design(design)
-    if not record.evaluation.ok:
+    evaluation = record.evaluation
+    if not evaluation.ok:
         raise InputError(
-            f"{run.path}: design {record.id} failed ({record.evaluation.reason}) and has no shape; choose another one"
+            f"{run.path}: design {record.id} failed ({evaluation.reason}) and has no shape; choose another one"
         )
-    target = Path(folder)
     _check_target(target, force)
-    level = record.evaluation.level
-    stored = run.reference(level)
-    reference = reference_for(run.case, level) if stored is None else Reference.from_dict(stored)
-    data = _design(run.case, record.evaluation, f"design {record.id}", record.as_dict(), reference)
+    stored = run.reference(evaluation.level)
+    reference = reference_for(run.case, evaluation.level) if stored is None else Reference.from_dict(stored)
+    data = leaving_design(run.case, evaluation, f"design {record.id}", record.as_dict(), reference)
     return _written(data, target, wanted)
+
+
+def _of_case(case: Case, design: int | str | DesignVariables) -> LeavingDesign:
+    if design == "initial":
+        variables = case.initial.variables
+    elif isinstance(design, DesignVariables):
+        variables = design
+    else:
+        raise InputError(f"--design {design}: a case has its initial design only; name a run file for others")
+    reference = reference_for(case, TRUTH.number)
+    evaluation = evaluate(case, variables, TRUTH.number, reference)
+    if not evaluation.ok:
+        raise SolverFailure(evaluation.stage, evaluation.reason)
+    label = "initial design" if variables == case.initial.variables else "design"
+    return leaving_design(case, evaluation, label, evaluation.as_dict(), reference)
 
 
 def zip_design(
@@ -113,34 +132,31 @@ def zip_design(
         formats: any of ``formats.FORMATS``.
 
     Raises:
-        InputError: an unknown format, or no room for the files.
+        InputError: an unknown format, a failed design, or no room for the files.
         SolverFailure: the form or its resistance curve cannot be computed.
     """
     wanted = checked_formats(formats)
-    data = _design(case, evaluation, label, evaluation.as_dict(), reference)
+    if not isinstance(evaluation, Ok):
+        raise InputError(f"{label} failed ({evaluation.reason}) and has no shape; choose another one")
+    data = leaving_design(case, evaluation, label, evaluation.as_dict(), reference)
     with tempfile.TemporaryDirectory(prefix="hpsop-export-") as workshop:
         folder = Path(workshop) / "design"
         _written(data, folder, wanted)
         return Path(shutil.make_archive(str(Path(workshop) / "archive"), "zip", folder)).read_bytes()
 
 
-def _design(case: Case, evaluation: Evaluation, label: str, document: dict[str, Any], reference: Reference) -> _Design:
-    hull, propeller = design_hull(case, evaluation.variables), design_propeller(case, evaluation.variables)
-    return _Design(case, evaluation, label, document, reference, hull, propeller)
-
-
-def _written(data: _Design, target: Path, formats: Sequence[str]) -> tuple[Path, ...]:
+def _written(data: LeavingDesign, target: Path, formats: Sequence[str]) -> tuple[Path, ...]:
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         # On the same file system as the target, so that every file appears whole or not at all.
         with tempfile.TemporaryDirectory(prefix=".hpsop-export-", dir=target.parent) as workshop:
-            made = _write(data, Path(workshop), formats)
-            target.mkdir(exist_ok=True)
+            made = [file.relative_to(workshop) for file in _write(data, Path(workshop), formats)]
             for file in made:
-                os.replace(file, target / file.name)
+                (target / file.parent).mkdir(parents=True, exist_ok=True)
+                os.replace(Path(workshop) / file, target / file)
     except OSError as error:
         raise InputError(f"{target}: cannot be written ({error.strerror or error}); choose another folder") from error
-    return tuple(target / file.name for file in made)
+    return tuple(target / file for file in made)
 
 
 def _check_target(target: Path, force: bool) -> None:
@@ -154,7 +170,7 @@ def _check_target(target: Path, force: bool) -> None:
         raise InputError(f"{target}: is not empty; give --force to replace files in it, or another folder")
 
 
-def _write(design: _Design, folder: Path, formats: Sequence[str]) -> list[Path]:
+def _write(design: LeavingDesign, folder: Path, formats: Sequence[str]) -> list[Path]:
     deviation = 0.0
     if "stl" in formats:
         from hpsop_core.export.meshes import write_stl
@@ -170,6 +186,10 @@ def _write(design: _Design, folder: Path, formats: Sequence[str]) -> list[Path]:
         from hpsop_core.export.lines import write_dxf
 
         write_dxf(folder / "lines.dxf", design.hull, design.propeller)
+    if "vtk" in formats:
+        from hpsop_core.export.vtp import write_fields
+
+        write_fields(folder, design)
     texts: dict[str, str] = {}
     if "csv" in formats:
         texts |= {
@@ -181,13 +201,21 @@ def _write(design: _Design, folder: Path, formats: Sequence[str]) -> list[Path]:
         }
     if "json" in formats:
         texts["design.json"] = json.dumps(design.document, indent=1, allow_nan=False) + "\n"
+    if "pff" in formats:
+        from hpsop_core.export.pff import propeller_pff
+
+        texts["propeller.pff"] = propeller_pff(design.propeller, design.title)
+    if "gdf" in formats:
+        from hpsop_core.export.panel_files import panels_gdf
+
+        texts["hull.gdf"] = panels_gdf(design.hull, design.title)
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
-    made = sorted(folder.iterdir(), key=lambda file: list(_MEANING).index(file.name))
+    made = sorted((file for file in folder.iterdir() if file.is_file()), key=_place)
     about = _ABOUT.format(
-        title=_title(design),
+        title=design.title,
         version=__version__,
-        files="".join(f"{file.name:<18s}{_MEANING[file.name]}\n" for file in made),
+        files="".join(f"{file.name:<22s}{_MEANING[_kind(file)]}\n" for file in made),
         deviation=max(deviation, 1e-6),
         edge=EDGE_THICKNESS_RATIO * design.propeller.diameter,
         warnings="".join(f"\nWarning: {text}\n" for text in design.evaluation.warnings),
@@ -197,11 +225,11 @@ def _write(design: _Design, folder: Path, formats: Sequence[str]) -> list[Path]:
     return [*made, readme]
 
 
-def _write_surfaces(design: _Design, folder: Path, formats: Sequence[str]) -> float:
+def _write_surfaces(design: LeavingDesign, folder: Path, formats: Sequence[str]) -> float:
     """The formats made of NURBS surfaces; the hull's largest deviation in m."""
     from hpsop_core.export.surfaces import design_surfaces
 
-    title = _title(design)
+    title = design.title
     surfaces, deviation = design_surfaces(design.hull, design.propeller)
     if "3dm" in formats:
         from hpsop_core.export.rhino import write_3dm
@@ -220,11 +248,10 @@ def _write_surfaces(design: _Design, folder: Path, formats: Sequence[str]) -> fl
     return deviation
 
 
-def _title(design: _Design) -> str:
-    h, p = design.hull, design.propeller
-    return (
-        f"{design.case.name}, {design.label} (level {design.evaluation.level}): "
-        f"L {h.length:.2f} m, B {h.breadth:.2f} m, d {h.draft:.2f} m, CB {h.hydrostatics.block_coefficient:.4f}; "
-        f"propeller D {p.diameter:.3f} m, Z {p.blade_count}, P/D at 0.7 R {p.pitch_diameter_ratio_07R:.4f}, "
-        f"EAR {p.expanded_area_ratio:.3f}"
-    )
+def _kind(file: Path) -> str:
+    """The key of a file's meaning: its name, with the number of the condition left open."""
+    return re.sub(r"_\d+\.vtp$", "_N.vtp", file.name)
+
+
+def _place(file: Path) -> tuple[int, str]:
+    return list(_MEANING).index(_kind(file)), file.name

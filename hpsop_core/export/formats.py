@@ -7,13 +7,16 @@ from importlib.util import find_spec
 
 from hpsop_core.errors import InputError
 
-FORMATS = ("stl", "glb", "3dm", "step", "iges", "dxf", "csv", "json")
+FORMATS = ("stl", "glb", "3dm", "step", "iges", "dxf", "csv", "json", "vtk", "pff", "gdf")
 
 OF_OPENCASCADE = ("step", "iges")
 """Written by OpenCASCADE, the extra ``hpsop[cad]``."""
 
-USUAL_FORMATS = tuple(name for name in FORMATS if name not in OF_OPENCASCADE)
-"""Written where none is named: the same on every machine."""
+SOLVED = ("vtk",)
+"""Need a solver once more for every condition, which takes seconds."""
+
+USUAL_FORMATS = tuple(name for name in FORMATS if name not in OF_OPENCASCADE + SOLVED)
+"""Written where none is named: the same on every machine, and quickly."""
 
 
 def checked_formats(formats: Sequence[str]) -> tuple[str, ...]:

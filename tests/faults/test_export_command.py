@@ -56,6 +56,33 @@ def test_mistakes_are_one_line(
     assert not folder.exists()
 
 
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (["dtc-p4119-paper", "--design", "compromise"], "is a case, and --design compromise is of a run"),
+        (["dtc-p4119-paper", "--set", "diameter=none"], "diameter"),
+        (["no-such-case"], "no-such-case"),
+        (["no-such-run.hpsop"], "--design"),
+    ],
+)
+def test_mistakes_about_case_and_run_are_one_line(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], words: list[str], told: str
+) -> None:
+    assert main(["export", *words, "--to", str(tmp_path / "out"), "--formats", "json"]) == 2
+    error = capsys.readouterr().err
+    assert told in error and error.count("\n") == 1
+    assert not (tmp_path / "out").exists()
+
+
+def test_a_run_asks_for_a_design_and_takes_no_changes(
+    run: RunReader, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    words = ["export", str(run.path), "--to", str(tmp_path / "out")]
+    assert main(words) == 2 and "say which design" in capsys.readouterr().err
+    assert main([*words, "--design", "initial", "--set", "diameter=9"]) == 2
+    assert "--set" in capsys.readouterr().err
+
+
 def test_a_folder_with_something_in_it_is_left_alone(run: RunReader, tmp_path: Path) -> None:
     mine = tmp_path / "design.json"
     mine.write_text("mine")
