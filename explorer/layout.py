@@ -29,6 +29,7 @@ from explorer.views.run_view import RunView
 from explorer.views.scene_view import SceneView
 from explorer.views.settings_view import SettingsView
 from explorer.views.ship_view import ShipView
+from explorer.views.table_view import TableView
 from explorer.views.toolbar_view import ToolbarView
 from explorer.views.whatif_view import WhatIfView
 from hpsop_core.errors import HpsopError
@@ -81,8 +82,8 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
         top.set_width(session.dock_width)
         bottom = gui.add_panel()
         # a browser opens the first tab: that of the ship where one is being brought in
-        titles = ["Design", "Charts", "Compare", "What-if"]
-        titles.insert(0 if session.app.ship.hull is not None else 4, "Your ship")
+        titles = ["Design", "Charts", "Table", "Compare", "What-if"]
+        titles.insert(0 if session.app.ship.hull is not None else len(titles), "Your ship")
         tabs = {title: bottom.add_tab(title) for title in titles}
         bottom.dock_below(top)
         RunControl(session, services.runs)
@@ -97,6 +98,10 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
             DesignView(session, designs, gui)
         with tabs["Charts"]:
             ChartsView(session, designs, gui, chart_tabs())
+        with tabs["Table"]:
+            TableView(
+                session, designs, gui, lambda name, data: client.send_file_download(name, data, save_immediately=True)
+            )
         with tabs["Compare"]:
             CompareView(session, designs, gui)
         with tabs["What-if"]:

@@ -236,6 +236,18 @@
     tip.style.top = Math.max(4, Math.min(y - h / 2, innerHeight - h - 4)) + "px";
   };
 
+  // ---- what scrolls sideways stays where it was when it is drawn again ---------------------------------------------
+  const scrolled = {};
+  listen(document, "scroll", (event) => {
+    const name = event.target.dataset && event.target.dataset.keep;
+    if (name) scrolled[name] = event.target.scrollLeft;
+  }, true);
+  H.kept = function (marker) {
+    const box = marker.previousElementSibling;
+    marker.remove();
+    if (box && box.dataset.keep) box.scrollLeft = scrolled[box.dataset.keep] || 0;
+  };
+
   // ---- overlays: pieces of HTML that stand over the 3D view instead of in a panel ---------------------------------
   const frames = {};
   H.overlay = function (marker) {

@@ -3,4 +3,5 @@
 * ``pareto``: what the Pareto chart shows of a run, and which design a click means.
 * ``parallel``: parallel coordinates, and which range a brush means.
 * ``drivers``: which variables drive which results, as a table.
+* ``designs_table``: the table of all designs: rows, order, filter words, HTML and CSV.
 """

@@ -148,6 +148,16 @@ def overlay(name: str, content: Markup) -> Markup:
     )
 
 
+def scrolling(name: str, content: Markup) -> Markup:
+    """What is wider than its panel, in a box that keeps its place when it is drawn again; ``name`` is the box's."""
+    return fill(
+        '<div class="wide" data-keep="{}">{}</div>'
+        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.kept(this)">',
+        name,
+        content,
+    )
+
+
 def tooltip(chart: str, content: Markup, serial: int) -> Markup:
     """HTML that the browser shows beside the pointer while it rests on ``chart``."""
     return fill(

@@ -12,11 +12,13 @@ from explorer.state.gestures import Gestures
 from explorer.state.hub import Hub
 from explorer.state.run_picture import RunPicture
 from explorer.state.shown import Shown
+from explorer.state.table_options import TableOptions
 from explorer.state.view_options import ViewOptions
 from hpsop_core.errors import HpsopError
 from hpsop_core.markup import Markup
 
 MOST_PINS = 4
+_MOST_STARS = 500
 # viser's client holds a batch of messages with 3D nodes in it until the graphics' next frame; curves and tables that
 # travel with them would wait too. So the scene follows a moment later, in a batch of its own.
 _SCENE_SETTLES = 0.06
@@ -43,6 +45,7 @@ class Session:
         limits: zoomed limits by chart.
         tab: the chosen chart.
         options: of the 3D view.
+        table: how the table of all designs is shown.
         archive, infeasible: what the Pareto chart shows besides the front.
         size: of the browser's window in px.
         legends: of what is overlaid in 3D, by overlay.
@@ -65,6 +68,8 @@ class Session:
         self.limits: dict[str, Limits] = {}
         self.tab = "open_water"
         self.options = ViewOptions()
+        self.table = TableOptions()
+        self._stars: dict[str, frozenset[int]] = {}
         self.archive = True
         self.infeasible = False
         self.size = (1366, 768)
@@ -85,6 +90,11 @@ class Session:
     def picture(self) -> RunPicture:
         """The run as it is now."""
         return self.app.picture
+
+    @property
+    def stars(self) -> frozenset[int]:
+        """Designs of the run on display that bear this browser's star."""
+        return self._stars.get(self.picture.name, frozenset())
 
     @property
     def dock_width(self) -> int:
@@ -188,6 +198,20 @@ class Session:
         self.options = dataclasses.replace(self.options, **changes)
         self._changed("options")
 
+    def set_table(self, **changes: Any) -> None:
+        """Change how the table of all designs is shown."""
+        self.table = dataclasses.replace(self.table, **changes)
+        self._changed("table")
+
+    def star(self, design_id: int) -> None:
+        """Give a design of the run on display a star, or take it back."""
+        stars = self.stars ^ {design_id}
+        if len(stars) > _MOST_STARS:
+            self.notify("No more stars", f"{_MOST_STARS} designs bear one already; take some back.", "yellow")
+            return
+        self._stars[self.picture.name] = stars
+        self._changed("stars")
+
     def set_legend(self, overlay: str, legend: Markup | None) -> None:
         """The legend of what is overlaid in 3D, or none."""
         if legend is None:
@@ -206,6 +230,7 @@ class Session:
         self.filters = {}
         self.limits = {}
         self.pins = ()
+        self.table = dataclasses.replace(self.table, page=0)
         self.selected = first
         self.hub.changed("run", "selection", "scrub", "filter", "pins")
 
@@ -231,6 +256,8 @@ class Session:
             "archive": self.archive,
             "infeasible": self.infeasible,
             "options": dataclasses.asdict(self.options),
+            "table": dataclasses.asdict(self.table),
+            "stars": {run: sorted(stars) for run, stars in self._stars.items() if stars},
         }
 
     def restore(self, saved: Mapping[str, Any], find: Callable[[object], Shown | None]) -> None:
@@ -241,6 +268,11 @@ class Session:
             find: a design from what ``Shown.saved`` gave, or None when there is none any more.
         """
         self.options = self.options.restored(saved.get("options"))
+        self.table = self.table.restored(saved.get("table"))
+        stars = saved.get("stars")
+        for run, ids in stars.items() if isinstance(stars, dict) else ():
+            if isinstance(ids, list):
+                self._stars[str(run)] = frozenset(item for item in ids[:_MOST_STARS] if type(item) is int)
         self.tab = str(saved.get("tab", self.tab))
         self.archive = saved.get("archive") is not False
         self.infeasible = saved.get("infeasible") is True
@@ -251,4 +283,4 @@ class Session:
             again = [find(item) for item in pins[:MOST_PINS]] if isinstance(pins, list) else []
             self.pins = tuple(shown for shown in again if shown is not None)
             self.selected = find(saved.get("selected")) or self.selected
-        self.hub.changed("selection", "pins", "scrub", "options", "tab", "layers")
+        self.hub.changed("selection", "pins", "scrub", "options", "tab", "layers", "table", "stars")

@@ -2,10 +2,11 @@
 
 Shared by all browsers: ``run_view`` (status and progress), ``settings_view`` with ``settings_fields`` (the case being
 set up), ``library_view`` (the folder of runs). One browser's own: ``pareto`` (the live front), ``design_view``,
-``charts_view`` with ``chart_tabs``, ``compare_view``, ``whatif_view``, ``ship_view`` with ``ship_picture`` and
-``ship_words`` (the tabs), ``scene_view`` (the ship in 3D), ``overlay_view`` (waves and pressures on it),
-``toolbar_view`` (buttons over it). Gestures without a picture of their own: ``run_control``, ``parallel_view``. Shared
-helpers: ``on_display`` (what is selected and overlaid), ``tables`` and ``chips`` (HTML of numbers and of buttons).
+``charts_view`` with ``chart_tabs``, ``table_view``, ``compare_view``, ``whatif_view``, ``ship_view`` with
+``ship_picture`` and ``ship_words`` (the tabs), ``scene_view`` (the ship in 3D), ``overlay_view`` (waves and pressures
+on it), ``toolbar_view`` (buttons over it). Gestures without a picture of their own: ``run_control``,
+``parallel_view``. Shared helpers: ``on_display`` (what is selected and overlaid), ``tables`` and ``chips`` (HTML of
+numbers and of buttons).
 
 A view gets the state (a ``Session``, or the ``AppState``) and of the services what it needs; it draws when the hub
 calls it and changes the state by the state's own methods (explorer/state/__init__.py).

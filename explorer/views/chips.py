@@ -9,7 +9,13 @@ NOTHING = Markup("")
 
 
 def chip(
-    action: str, word: str, arg: str = "", on: bool = False, disabled: bool = False, css: str = "", hint: str = ""
+    action: str,
+    word: str | Markup,
+    arg: str = "",
+    on: bool = False,
+    disabled: bool = False,
+    css: str = "",
+    hint: str = "",
 ) -> Markup:
     """One button.
 

@@ -348,3 +348,41 @@ def test_reload_comes_back(page, session, explorer):
     assert fresh.selected.design_id == wanted
     assert len(fresh.pins) == pins
     assert np.isfinite(fresh.selected.evaluation.objectives["f1"])
+
+
+def test_the_table_sorts_selects_filters_and_saves(page, session):
+    choose_tab(page, "Table")
+    press(page, "table_which", "all")
+    press(page, "table_sort", "length")
+    wait_until(lambda: session.table.sort == "length" and session.table.which == "all", 20, "the order")
+    # after a generation of eight designs and more: the second row by length
+    order = session.picture.ids[np.lexsort((session.picture.ids, session.picture.column("length")))]
+    wanted = [int(number) for number in order if session.picture.row(number) is not None][1]
+    row = page.locator(f'tr[data-design="{wanted}"]')
+    row.wait_for()
+    row.locator("td").nth(4).click(force=True)
+    wait_until(lambda: session.selected.design_id == wanted, 20, "the row's design")
+    page.locator(f'tr[data-design="{wanted}"].on').wait_for()
+    # the keyboard reaches star and number
+    star = row.locator("button.star")
+    star.focus()
+    page.keyboard.press("Enter")
+    wait_until(lambda: session.stars == {wanted}, 20, "the star")
+    press(page, "table_which", "starred")
+    page.wait_for_function("() => document.querySelectorAll('tr[data-design]').length === 1")
+    with page.expect_download() as caught:
+        press(page, "table_csv")
+    with open(caught.value.path(), encoding="utf-8") as file:
+        lines = file.read().splitlines()
+    assert lines[0].startswith("design,level,generation,feasible,star,")
+    assert len(lines) == 2 and lines[1].startswith(f"{wanted},1,")
+    # a condition in words narrows the table and fades the charts
+    press(page, "table_which", "all")
+    field = page.locator('label:text-is("Only")').locator("xpath=ancestor::*[.//input][1]//input")
+    field.fill("f1 < 0, f2 > 9")
+    wait_until(lambda: set(session.filters) == {"f1", "f2"}, 20, "the filter")
+    page.get_by_text("No design keeps every condition above").wait_for()
+    press(page, "table_unfilter", "f1")
+    wait_until(lambda: not set(session.filters) & {"f1"}, 20, "the condition to go")
+    session.clear_filters()
+    choose_tab(page, "Design")
