@@ -4,6 +4,6 @@
 * fit_dtc: the shipped hull from the offsets of the reference ship; dtc_sections: those offsets, read
 * hull_campaign: public ships as tables of every kind, read and measured
 * licences: docs/licences.md from what is installed; lock: the pins with hashes that `make` installs
-* pictures: a folder: the pictures of the docs
+* pictures: a folder: the pictures of the docs; validation: docs/validation.md and its plots
 * chromium: which Chromium shows the page without a screen, and how it starts
 """

@@ -329,7 +329,7 @@ def _validate(arguments: argparse.Namespace) -> int:
         if not arguments.json:
             mark = "pass" if check.passed else "MISS"
             print(
-                f"{mark}  {check.group}: {check.quantity}: computed {check.computed:.6g}, reference "
+                f"{mark}  [{check.label}] {check.group}: {check.quantity}: computed {check.computed:.6g}, reference "
                 f"{check.reference:.6g} ({check.source}; {check.tolerance})",
                 flush=True,
             )

@@ -1,6 +1,8 @@
 """Validation: our numbers beside experiments, published codes and closed forms, printed by ``hpsop validate``.
 
-* check: one line of it: a number, what it is held against, and how far it may be off
+* check: one line of it: a number, what it is held against, how far it may be off, and what it proves
+* comparison: a curve of such lines
+* published_hulls, published_propellers: ships and propellers of others, as they were measured
 * hull, resistance, powering, rankine, propeller_level1, propeller_level2: the lines of a discipline
 * rankine_studies, propeller_studies: sweeps that validation, pictures and docs share
 """
@@ -12,7 +14,16 @@ from collections.abc import Iterator
 
 from hpsop_core.validation.check import Check
 
-DISCIPLINES = ("hull", "resistance", "powering", "rankine", "propeller_level1", "propeller_level2")
+DISCIPLINES = (
+    "hull",
+    "resistance",
+    "powering",
+    "rankine",
+    "propeller_level1",
+    "propeller_level2",
+    "published_hulls",
+    "published_propellers",
+)
 
 
 def all_checks() -> Iterator[Check]:

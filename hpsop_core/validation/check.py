@@ -2,7 +2,16 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from collections.abc import Iterable, Iterator
+from dataclasses import dataclass, replace
+
+FITTED = "fitted"
+"""A constant or a shape of ours was chosen on these very data: agreement proves nothing but that the fit is kept."""
+HELD_OUT = "held out"
+"""Somebody else's measurement, code or closed form that no constant of ours was chosen on."""
+SELF_CONSISTENCY = "self-consistency"
+"""Our numbers beside our own, or beside a bound that they must keep."""
+LABELS = (FITTED, HELD_OUT, SELF_CONSISTENCY)
 
 
 @dataclass(frozen=True)
@@ -17,6 +26,7 @@ class Check:
         source: where the reference comes from.
         tolerance: the tolerance in words, with its kind, for example "0.5 % relative" or "within 2.5 to 4.0e-4".
         passed: whether the tolerance holds.
+        label: one of ``LABELS``; the weakest claim unless more is said.
 
     numpy's scalars become Python's own, which every JSON writer knows.
     """
@@ -28,10 +38,19 @@ class Check:
     source: str
     tolerance: str
     passed: bool
+    label: str = SELF_CONSISTENCY
 
     def __post_init__(self) -> None:
         for name, kind in (("computed", float), ("reference", float), ("passed", bool)):
             object.__setattr__(self, name, kind(getattr(self, name)))
+        if self.label not in LABELS:
+            raise ValueError(f"a check is one of {', '.join(LABELS)}, not {self.label}")
+
+
+def labelled(label: str, checks: Iterable[Check]) -> Iterator[Check]:
+    """The same checks with this label."""
+    for check in checks:
+        yield replace(check, label=label)
 
 
 def relative_check(

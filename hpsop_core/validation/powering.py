@@ -8,7 +8,7 @@ from collections.abc import Iterator
 from hpsop_core.assets import read_asset_text
 from hpsop_core.hydro import holtrop
 from hpsop_core.hydro.friction import ittc57_coefficient
-from hpsop_core.validation.check import Check, absolute_check
+from hpsop_core.validation.check import HELD_OUT, Check, absolute_check, labelled
 
 GROUP = "powering"
 SOURCE = "worked example in International Shipbuilding Progress 29 (1982)"
@@ -42,6 +42,10 @@ def published_numbers() -> dict[str, float]:
 
 def checks() -> Iterator[Check]:
     """k, C_A, w, t and eta_R, each to one unit of its last printed digit."""
+    yield from labelled(HELD_OUT, _worked_example())
+
+
+def _worked_example() -> Iterator[Check]:
     ship, printed = PUBLISHED_SHIP, published_numbers()
     friction = ittc57_coefficient(printed["speed"] * ship.length / VISCOSITY)
     allowance = holtrop.correlation_allowance(ship)

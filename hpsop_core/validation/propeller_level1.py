@@ -13,7 +13,7 @@ from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.hydro.singularities.vortices import wrench_velocities
 from hpsop_core.typing_aliases import Array
-from hpsop_core.validation.check import Check, absolute_check, relative_check
+from hpsop_core.validation.check import FITTED, HELD_OUT, Check, absolute_check, labelled, relative_check
 
 GROUP = "propeller, level 1"
 MODEL_DIAMETER = 0.3048
@@ -155,6 +155,10 @@ def _p4119_checks() -> Iterator[Check]:
         if advance[i] <= 0.9:
             yield relative_check(GROUP, f"P4119 J {advance[i]:g}: KT", kt, float(row["KT"]), EXPERIMENT, 0.05)
             yield relative_check(GROUP, f"P4119 J {advance[i]:g}: 10KQ", kq, float(row["10KQ"]), EXPERIMENT, 0.05)
+
+
+def _peer_checks() -> Iterator[Check]:
+    model = propeller_family(load_propeller(), MODEL_DIAMETER, 3)
     rows = [row for row in reference_rows("p4119_propan.csv") if float(row["J"]) <= 0.9]
     advance = np.array([float(row["J"]) for row in rows])
     result = lifting_line.solve(model, advance, SectionDrag.inviscid())
@@ -178,6 +182,7 @@ def checks() -> Iterator[Check]:
         "0.005 absolute",
         abs(area - 0.607) <= 0.005,
     )
-    yield from _kernel_checks()
+    yield from labelled(HELD_OUT, _kernel_checks())
     yield from _bound_checks()
-    yield from _p4119_checks()
+    yield from labelled(FITTED, _p4119_checks())
+    yield from labelled(HELD_OUT, _peer_checks())

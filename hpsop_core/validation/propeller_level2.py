@@ -14,7 +14,7 @@ from hpsop_core.hydro.blade_panels.solver import BladePanelResult, forces_of, so
 from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.typing_aliases import Array
-from hpsop_core.validation.check import Check, absolute_check, relative_check
+from hpsop_core.validation.check import FITTED, HELD_OUT, Check, absolute_check, labelled, relative_check
 from hpsop_core.validation.propeller_level1 import (
     EXPERIMENT,
     MODEL_DIAMETER,
@@ -54,8 +54,8 @@ def checks() -> Iterator[Check]:
     """All checks of the panel method; about ten seconds, each group when it is asked for."""
     yield from _geometry_checks()
     yield from _grid_checks()
-    yield from _peer_checks()
-    yield from _experiment_checks()
+    yield from labelled(HELD_OUT, _peer_checks())
+    yield from labelled(FITTED, _experiment_checks())
     yield from _level_checks()
     yield from _bound_checks()
 

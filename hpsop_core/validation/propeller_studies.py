@@ -18,10 +18,11 @@ from hpsop_core.hydro.blade_panels.solver import forces_of, solve
 from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.lifting_line.solver import LiftingLineSettings
 from hpsop_core.hydro.open_water import OpenWater
-from hpsop_core.hydro.section_drag import SectionDrag
+from hpsop_core.hydro.section_drag import OFF_DESIGN_FACTOR, SectionDrag
 from hpsop_core.typing_aliases import Array
 from hpsop_core.validation.propeller_level1 import MODEL_DIAMETER, reference_rows
 from hpsop_core.validation.propeller_level2 import fine_rigid_wake
+from hpsop_core.validation.published_propellers import B_SERIES, b_series_drag, published_propeller
 
 MODEL_SCALE = SectionDrag.model_scale(10.0, 1.0e-6)
 GRIDS = ((20, 10), (24, 10), (32, 12), (40, 16), (60, 20), (80, 24))
@@ -177,8 +178,41 @@ def strips_of_level_1() -> Rows:
         yield (str(strips), f"{result.thrust_coefficient[0]:.4f}")
 
 
+def drag_factor_on_the_b_series() -> Rows:
+    """Error of efficiency in % over J by k of the section drag, level 1: what one k does from heavy to light load."""
+    for blades, name in B_SERIES.items():
+        rows = {
+            round(float(row["J"]), 2): float(row["eta0"]) for row in reference_rows(f"bseries_{name}_openwater.csv")
+        }
+        propeller = published_propeller(f"bseries_{name}", blades, 1.0)
+        advance = np.array([0.3, 0.4, 0.5, 0.6, 0.7, 0.8])
+        for factor in (0.0, 3.0, OFF_DESIGN_FACTOR, 10.0):
+            drag = replace(b_series_drag(propeller), off_design_factor=factor)
+            own = lifting_line.solve(propeller, advance, drag).open_water_efficiency
+            cells = [f"{100.0 * (a / rows[round(float(j), 2)] - 1.0):+.1f}" for a, j in zip(own, advance, strict=True)]
+            yield (f"B{blades}", f"{factor:g}", *cells)
+
+
+def camber_at_full_scale() -> Rows:
+    """Change of KT, KQ and efficiency in % where a full-scale blade keeps more of its camber, level 2, D 9 m, J 0.7."""
+    for blades in (3, 5, 7):
+        propeller = propeller_family(load_propeller(), 9.0, blades)
+        base = solve(propeller, [0.7], SectionDrag.full_scale()).open_water
+        for kept in (0.965, 1.0):
+            settings = BladePanelSettings(camber_effectiveness=kept)
+            changed = solve(propeller, [0.7], SectionDrag.full_scale(), settings).open_water
+            pairs = (
+                (changed.thrust_coefficient, base.thrust_coefficient),
+                (changed.torque_coefficient, base.torque_coefficient),
+                (changed.open_water_efficiency, base.open_water_efficiency),
+            )
+            yield (str(blades), f"{kept:g}", *(f"{100.0 * (float(a[0]) / float(b[0]) - 1.0):+.1f}" for a, b in pairs))
+
+
 _EXPERIMENT_HEAD = ("J", "KT test", "KT", "error", "10KQ test", "10KQ", "error", "set B: KT / 10KQ")
 _LEVELS_HEAD = ("Z", "m", "EAR", "KT at J 0.5, 0.7, 0.85 in %", "KQ in %")
+DRAG_FACTOR_HEAD = ("propeller", "k", "J 0.3", "0.4", "0.5", "0.6", "0.7", "0.8")
+CAMBER_HEAD = ("Z", "camber kept", "KT in %", "KQ in %", "efficiency in %")
 TABLES = (
     ("Level 1, P4119, model scale", _EXPERIMENT_HEAD, level_1_against_experiment),
     ("Level 1, strips", ("strips", "KT at J 0.5"), strips_of_level_1),
@@ -196,6 +230,8 @@ TABLES = (
     ("Grid over the family", ("propeller", "KT in %", "KQ in %"), grid_over_the_family),
     ("Levels over the family", _LEVELS_HEAD, levels_over_the_family),
     ("Levels on raked and skewed blades", ("rake/D", "skew", "Z 3", "Z 5", "Z 7"), levels_on_raked_and_skewed_blades),
+    ("k on the B-series", DRAG_FACTOR_HEAD, drag_factor_on_the_b_series),
+    ("Camber at full scale", CAMBER_HEAD, camber_at_full_scale),
     ("Cavitation", ("Z, EAR", "panels", "J 0.65", "J 0.75", "J 0.9"), cavitation_and_grid),
 )
 

@@ -18,7 +18,7 @@ from hpsop_core.hydro.rankine.solver import double_body, solve, solve_panels, so
 from hpsop_core.hydro.singularities.source_panels import SourcePanels, flat_panels, panel_velocities
 from hpsop_core.typing_aliases import Array
 from hpsop_core.validation import rankine_studies as studies
-from hpsop_core.validation.check import Check, range_check, relative_check
+from hpsop_core.validation.check import HELD_OUT, Check, labelled, range_check, relative_check
 
 GROUP = "Rankine panels"
 # Largest surface speed over the stream's, from Lamb's integrals.
@@ -29,16 +29,15 @@ ELLIPSOIDS = (
     ((1.0, 0.14, 0.08), 1.02221),
 )
 WIGLEY_SWEEP = (0.25, 0.266, 0.29, 0.313, 0.35, 0.38, 0.408)
-TANK_SOURCE = "SVA Potsdam 2010, El Moctar, Shigunov, Zorn 2012, with k = 0.094"
 WIGLEY_SOURCE = "experiments 1.4 to 1.9e-3, mean 1.70e-3 (Chen, Noblesse 1983)"
 
 
 def checks() -> Iterator[Check]:
     """Kernels and bodies, waves, ships, and the objective; the last take minutes."""
-    yield from _bodies()
-    yield from _waves()
-    yield from _wigley()
-    yield from _tank()
+    yield from labelled(HELD_OUT, _bodies())
+    yield from labelled(HELD_OUT, _waves())
+    yield from labelled(HELD_OUT, _wigley())
+    yield from _ahead()
     yield from _objective()
     yield from _block()
     yield from _mesh()
@@ -107,14 +106,6 @@ def _waves() -> Iterator[Check]:
         length = 2.0 * np.pi / studies.track_wave_number(fields, 1.0, 0.5, (1.0, 2.1))
         name = f"transverse wave length / Lpp behind a sphere at Fn {number:g}"
         yield relative_check(GROUP, name, length, 2.0 * np.pi * number**2, "2 pi Fn^2, deep water", 0.05)
-    source = "double-body rise only; waves would give 1"
-    hull = studies.parent_hull_itself()
-    for condition in solve(hull, studies.FROUDE_NUMBERS, fields=True).conditions:
-        if condition.fields is None:
-            continue
-        share = studies.upstream_share(condition.fields, hull.length, 0.2)
-        name = f"DTC, elevation 0.2 Lpp ahead of FP / largest, Fn {condition.froude_number:g}"
-        yield range_check(GROUP, name, share, 0.0, 0.10, 0.0, source)
     for depth_froude in (0.6, 0.7, 0.8, 1.0):
         number = depth_froude * np.sqrt(3.0 * radius)
         condition = solve_panels(sphere, [number], deep).conditions[0]
@@ -126,6 +117,17 @@ def _waves() -> Iterator[Check]:
         ):
             quantity = f"sphere 3 radii deep, U/sqrt(gf) {depth_froude:g}, R/(pi rho g a^3) by {name}"
             yield relative_check(GROUP, quantity, value * convert, exact, "Havelock 1917, dipole", 0.10)
+
+
+def _ahead() -> Iterator[Check]:
+    source = "double-body rise only; waves would give 1"
+    hull = studies.parent_hull_itself()
+    for condition in solve(hull, studies.FROUDE_NUMBERS, fields=True).conditions:
+        if condition.fields is None:
+            continue
+        share = studies.upstream_share(condition.fields, hull.length, 0.2)
+        name = f"DTC, elevation 0.2 Lpp ahead of FP / largest, Fn {condition.froude_number:g}"
+        yield range_check(GROUP, name, share, 0.0, 0.10, 0.0, source)
 
 
 def _wigley() -> Iterator[Check]:
@@ -169,36 +171,22 @@ def tank_points() -> list[dict[str, float]]:
     return [{key: float(value) for key, value in row.items()} for row in csv.DictReader(lines)]
 
 
-def _tank() -> Iterator[Check]:
-    rows = tank_points()
-    result = solve(studies.parent_hull_itself(), [*(row["froude_number"] for row in rows), 0.218, 0.27])
-    for row, condition in zip(rows, result.conditions, strict=False):
-        total = (1.0 + studies.FORM_FACTOR) * row["friction_coefficient"] + condition.wave_coefficient
-        name = f"DTC model, CT at Fn {row['froude_number']:g} (Cw {1e4 * condition.wave_coefficient:.2f}e-4)"
-        yield relative_check(GROUP, name, total, row["total_coefficient"], TANK_SOURCE, 0.06)
-    at_218, at_27 = result.conditions[-2:]
-    name = "DTC, Cw at Fn 0.218 by plane"
-    yield range_check(GROUP, name, at_218.wave_coefficient, 2.5e-4, 4.0e-4, 3.36e-4, TANK_SOURCE)
-    source = "no test exists above Fn 0.218; bracket of earlier versions of this solver"
-    yield range_check(GROUP, "DTC, Cw at Fn 0.27 by plane", at_27.wave_coefficient, 5e-4, 9e-4, 7e-4, source)
-
-
 def _objective() -> Iterator[Check]:
     source = "what an optimiser can feel"
     for name, low, high in (("length_to_breadth", 6.5, 8.5), ("breadth_to_draft", 3.0, 4.5)):
-        at = np.linspace(low, high, 41)
+        at = np.linspace(low, high, 21)
         areas = studies.sweep_ratio(name, at)
         residual = studies.cubic_residual(at, areas) if np.all(areas > 0.0) else np.inf
         label = f"wave resistance over {name} {low:g} to {high:g}, residual about a cubic"
         yield range_check(GROUP, label, residual, 0.0, 2e-3, 0.0, source)
-    at = np.linspace(0.95, 1.05, 41)
+    at = np.linspace(0.95, 1.05, 31)
     _, areas = studies.sweep_displacement(at)
     residual = studies.local_cubic_residual(at, areas) if np.all(areas > 0.0) else np.inf
     label = "wave resistance over displacement ratio 0.95 to 1.05, residual about local cubics"
     yield range_check(GROUP, label, residual, 0.0, 2e-3, 0.0, source)
     for kind, designs in (
-        ("200 designs inside the paper's bounds", studies.affine_designs(200, seed=1)),
-        ("100 designs with displacement and LCB varied too", studies.form_designs(100, seed=3)),
+        ("40 designs inside the paper's bounds", studies.affine_designs(40, seed=1)),
+        ("40 designs with displacement and LCB varied too", studies.form_designs(40, seed=3)),
     ):
         sample, count = studies.robustness(designs), len(designs)
         label = f"{kind}: solved, or refused with a reason"
@@ -210,7 +198,7 @@ def _objective() -> Iterator[Check]:
 
 def _block() -> Iterator[Check]:
     """Hump, hollow and wall over CB .60 to .75, and where the hollow is."""
-    ratios = np.linspace(0.905, 1.14, 24)
+    ratios = np.linspace(0.905, 1.14, 16)
     blocks, areas = studies.sweep_displacement(ratios)
     shoulder = studies.shoulder_at(ratios)
     source = "a shoulder's trough on a crest of the bow's waves"
