@@ -82,6 +82,7 @@ class RunKeeper:
         self._known: set[int] = set()
         self._ids = np.zeros(0, dtype=np.int64)
         self._rows = np.zeros((0, 7))
+        self._predictions = 0
         self._table = np.zeros((0, 0))
         self._quantities: tuple[Quantity, ...] = ()
         self._picture: RunPicture | None = None
@@ -337,6 +338,7 @@ class RunKeeper:
             knee=newest.knee if newest is not None else None,
             seconds_left=snapshot.seconds_left if snapshot is not None else None,
             elapsed=elapsed,
+            predictions=self._predictions,
         )
         return self._picture
 
@@ -362,6 +364,7 @@ class RunKeeper:
                 ]
             )
             evaluation = record.evaluation
+            self._predictions += evaluation.predicted
             table.append(
                 [
                     np.nan if (value := quantity.value(evaluation)) is None else float(value)

@@ -47,6 +47,7 @@ class RunPicture:
         ids, level, generation: of every finished evaluation, shape (n,), ids ascending.
         objectives: (n, 2), NaN where the evaluation failed.
         feasible, failed, by_hand: (n,).
+        predictions: how many of them a learnt surface predicted.
         table: (n, len(columns)), NaN where a number is missing.
         columns: quantity keys of the table.
         generations: finished generations in order.
@@ -74,6 +75,7 @@ class RunPicture:
     knee: int | None = None
     seconds_left: float | None = None
     elapsed: float = 0.0
+    predictions: int = 0
 
     def __post_init__(self) -> None:
         """One consistent picture: as many of everything as there are designs, a column of the table for each key.

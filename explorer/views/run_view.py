@@ -103,9 +103,10 @@ class RunView:
             return soft("Set bounds below and press Start.")
         newest = picture.generations[-1] if picture.generations else None
         level = newest.level if newest else 1
+        predicted = f", {number_text(picture.predictions, 0)} predicted" if picture.predictions else ""
         facts = [
             ("generation", f"{len(picture.generations)} of {picture.total_generations}, level {level}"),
-            ("evaluations", f"{number_text(len(picture.ids), 0)}, {int(picture.failed.sum())} failed"),
+            ("evaluations", f"{number_text(len(picture.ids), 0)}{predicted}, {int(picture.failed.sum())} failed"),
             ("hypervolume", number_text(newest.hypervolume, 5) if newest else "–"),
         ]
         if picture.status in ACTIVE and picture.seconds_left is not None:

@@ -67,6 +67,8 @@ class RunReader:
         self._designs: dict[int, DesignRecord] = {}
         self._generations: dict[int, GenerationRecord] = {}
         self._status: os.stat_result | None = None
+        self._known_errors: dict[str, dict[str, float]] = {}
+        self._errors_of: tuple[int, int] | None = None
         with self._reading() as content:
             self._values = content.values()
             self.files: tuple[ShipFile, ...] = content.files()
@@ -296,14 +298,24 @@ class RunReader:
                     record = _record("evaluations", row)
                     evaluation = self._placed(content.document(row))
                     self._designs[number] = DesignRecord(number, record["origin"], record["generation"], evaluation)
-        errors = self._errors()
+        errors = self._errors(fresh=bool(missing))
         return tuple(_with_errors(self._designs[number], errors.get(str(number))) for number in ids)
 
-    def _errors(self) -> dict[str, dict[str, float]]:
-        """Half widths by quantity, by the design's id, of designs that were solved on a finer mesh."""
-        with self._reading() as content:
-            found: dict[str, dict[str, float]] = json.loads(content.values().get("errors", "{}"))
-        return found
+    def _errors(self, fresh: bool) -> dict[str, dict[str, float]]:
+        """Half widths by quantity, by the design's id, of designs that were solved on a finer mesh.
+
+        They come when the designs have long been read: looked for again whenever the file was changed.
+        """
+        try:
+            status = os.stat(self._real)
+        except OSError:
+            return self._known_errors  # what has been read is still known when the file is gone
+        changed = (status.st_mtime_ns, status.st_size)
+        if fresh or changed != self._errors_of:
+            with self._reading() as content:
+                self._known_errors = json.loads(content.values().get("errors", "{}"))
+            self._errors_of = changed
+        return self._known_errors
 
     def _placed(self, document: Mapping[str, Any]) -> Evaluation:
         """An evaluation with the bounds that it stands on, which files of earlier versions do not tell."""
