@@ -11,7 +11,7 @@ LIST = constraints/$(shell $(BIN)/python -c 'import sys, sysconfig; print(f"cp{s
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 
-.PHONY: explore test test-core test-oldest lint soak benchmark pictures chromium lock clean
+.PHONY: explore test test-core test-oldest lint soak faults benchmark pictures chromium lock clean
 
 explore: $(VENV)/installed
 	$(BIN)/hpsop-explore $(ARGS)
@@ -34,6 +34,10 @@ test-oldest: $(OLDEST)/installed
 
 soak: $(VENV)/installed-for-tests
 	$(BIN)/python -m pytest -m soak
+
+# Plants faults into a copy of the tree, one at a time, and expects red tests; about an hour, no part of `make test`.
+faults: $(VENV)/installed-for-tests
+	$(BIN)/python -m tools.faults $(ARGS)
 
 benchmark: $(VENV)/installed-for-tests
 	for script in benchmarks/bench_*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
