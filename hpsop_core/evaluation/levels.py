@@ -121,8 +121,9 @@ def _blade_panels(propeller: Propeller, advance: Array, drag: SectionDrag) -> Pr
 FAST = Level(
     number=1,
     words="Michell's thin-ship integral and a lifting line",
-    caution="Its ranking of similar hulls is useful; its absolute wave resistance is only as good as its calibration. "
-    "Let the run reach level 2 before deciding anything.",
+    caution="It ranks hulls of one fullness as level 2 does, hulls of different fullness only where it has learnt from "
+    "level 2; its absolute wave resistance is only as good as its calibration. Let the run reach level 2 before "
+    "deciding anything.",
     solve_waves=_thin_ship,
     solve_propeller=_lifting_line,
     is_calibrated=True,

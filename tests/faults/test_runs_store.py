@@ -105,7 +105,8 @@ def test_3_one_record_a_design_and_level_and_hand_made_designs_apart(path: Path)
     assert number == HAND_IDS_BEGIN
     assert store.record_by_hand(by_hand) == number
     assert store.record_by_hand(evaluate(CASE, candidate(14.2).variables, 1, None)) == number + 1
-    assert {outcome.evaluation_id for outcome in store.outcomes().values()} == {1, 2}
+    assert set(store.outcomes()) == {1, 2}
+    assert {outcome.evaluation_id for _, _, outcome in store.outcomes().values()} == {1, 2}
     store.close()
     run = open_run(path)
     assert [record.id for record in run.by_hand()] == [number, number + 1]
