@@ -84,10 +84,10 @@ the drag of a section far from its ideal angle.""",
         "Wageningen B-series, 3, 5 and 7 blades",
         """Polynomials of Oosterveld and van Oossanen 1975 at Re 2e6, 1.5 % of K_T and K_Q near the design J. B-series
 sections are aerofoils with a flat face, ours are NACA 66 (modified) on a = 0.8: **edge thickness** of the
-table is zero, so its camber is an upper bound, while our section's trailing edge is 0.067 of the thickness
-wide. So efficiency, slopes and trends are compared, never a single K_T. Efficiency comes out 1 to 3.5 %
-high with three and five blades, and up to 7 % high with seven; K_T over J is too flat, most with three
-blades. Between *numbers of blades* efficiencies compare to 3.5 % at J 0.7, not better. Slopes and K_T
+table is zero, so its camber is an upper bound; ours, 0.067 of the thickness wide as tabulated, is closed in
+both solvers. So efficiency, slopes and trends are compared, never a single K_T. Efficiency comes out 1 to
+3.5 % high with three and five blades, and up to 7 % high with seven; K_T over J is too flat, most with
+three blades. Between *numbers of blades* efficiencies compare to 3.5 % at J 0.7, not better. Slopes and K_T
 ratios stand in `hpsop validate`: K_T falls 4 to 18 % too slowly at level 2, and K_T of seven blades over
 that of three is 12 % high.""",
         published_propellers.b_series,
@@ -116,7 +116,7 @@ def _chart(comparisons: Sequence[Comparison], name: str) -> Plot:
     )  # fmt: skip
     first = comparisons[0]
     plot.points(
-        first.at, first.measured, "circle", 4.0, "published", name="measured", key="measured, with its bounds",
+        first.at, first.measured, "square", 3.0, "published open", name="measured", key="measured, with its bounds",
         y_error=np.stack([first.measured - first.lower, first.upper - first.measured]),
     )  # fmt: skip
     for comparison in comparisons:
@@ -199,7 +199,9 @@ def page(folder: Path) -> str:
                 lines += _rows(comparison)
     lines += [
         "", "## Section drag against loading", "",
-        "One k for all: error of the B-series' efficiency in % at level 1, by k of Cd = Cd0 (1 + k (CL - CLi)^2).", "",
+        "One k for all: error of the B-series' efficiency in % at level 1, by k of Cd = Cd0 (1 + k (CL - CLi)^2). The",
+        "k of P4119, 6.7, holds over the loading with three and five blades, where the error changes by 2 %; k alone",
+        "cannot mend the light end of seven blades, where thrust itself is too high.", "",
         *_table(DRAG_FACTOR_HEAD, drag_factor_on_the_b_series()),
         "", "## Camber and Reynolds number", "",
         "The share of camber that a blade keeps was fitted at model scale (0.935 at level 2) and is used at full",

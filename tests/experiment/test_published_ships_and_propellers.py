@@ -2,12 +2,14 @@
 
 from __future__ import annotations
 
+import json
 import re
 from pathlib import Path
 
 import numpy as np
 import pytest
 
+from hpsop_core.cli.main import main
 from hpsop_core.validation import published_hulls, published_propellers
 from hpsop_core.validation.check import FITTED, HELD_OUT, LABELS, SELF_CONSISTENCY, Check, labelled
 from hpsop_core.validation.comparison import Comparison
@@ -91,3 +93,20 @@ def test_the_page_tells_todays_numbers() -> None:
             assert float(row[1]) == pytest.approx(computed, rel=1e-3), (found.group, at)
     for picture in re.findall(r"\((pictures/[^)]+)\)", text):
         assert (PAGE.parent / picture).is_file(), picture
+
+
+def test_the_command_labels_its_lines_and_hides_no_miss(
+    monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    good = Check("g", "kept", 1.0, 1.0, "s", "t", True, FITTED)
+    bad = Check("g", "lost", 2.0, 1.0, "s", "t", False, HELD_OUT)
+    monkeypatch.setattr("hpsop_core.validation.all_checks", lambda: iter([good, bad]))
+    assert main(["validate", "--json"]) == 1
+    told = capsys.readouterr()
+    first, second = json.loads(told.out)["checks"]
+    keys = {"group", "quantity", "computed", "reference", "source", "tolerance", "passed", "label"}
+    assert set(first) == keys and (first["label"], second["label"]) == (FITTED, HELD_OUT)
+    assert "held out: 0 of 1" in told.err and "1 of 2" in told.err
+    monkeypatch.setattr("hpsop_core.validation.all_checks", lambda: iter([good]))
+    assert main(["validate"]) == 0
+    assert "pass  [fitted] g: kept" in capsys.readouterr().out
