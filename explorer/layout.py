@@ -116,6 +116,8 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
     def hello(event: PageEvent) -> None:
         session.resize(event.numbers.get("width"), event.numbers.get("height"))
         top.set_width(session.dock_width)
+        if session.narrow:
+            gui.main_panel.minimize()
         session.greet(event.browser)
         you.show(fill('<style>[data-person="{}"]::after{{content:" (you)"}}</style>', session.number))
         saved = session.app.memory.get(session.browser)
@@ -133,10 +135,16 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
     session.gestures.on("hello", "", hello)
 
     def size(event: PageEvent) -> None:
-        before = session.dock_width
+        before, narrow = session.dock_width, session.narrow
         session.resize(event.numbers.get("width"), event.numbers.get("height"))
         if session.dock_width != before:
             top.set_width(session.dock_width)
+        if session.narrow != narrow:
+            # of this browser alone: the others' windows have their own width
+            if session.narrow:
+                gui.main_panel.minimize()
+            else:
+                gui.main_panel.expand()
 
     session.gestures.on("size", "", size)
     session.hub.on(("options",), theme)

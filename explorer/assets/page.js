@@ -12,6 +12,36 @@
     disposers.push(() => target.removeEventListener(type, handler, options));
   };
 
+  // ---- the tab's title, and a server that is gone ------------------------------------------------------------------
+  function title() {
+    const run = document.querySelector("[data-run-name]");
+    const wanted = run && run.dataset.runName ? run.dataset.runName.replace(/\.hpsop$/, "") + " – hpsop" : "hpsop";
+    if (document.title !== wanted) document.title = wanted;
+  }
+  const gone = document.createElement("div");
+  gone.className = "hpsop-gone";
+  gone.setAttribute("role", "alert");
+  gone.style.display = "none";
+  document.body.appendChild(gone);
+  disposers.push(() => gone.remove());
+  let missed = 0;
+  async function alive() {
+    try {
+      // the smallest thing that the server gives; it knows no HEAD. A proxy answers in its place with 502
+      const answer = await fetch("hpsop-access.js", { cache: "no-store" });
+      if (answer.status >= 500) throw new Error(answer.statusText);
+      missed = 0;
+    } catch (e) {
+      missed += 1;
+    }
+    const wanted = missed > 1 ? "The server does not answer. What is shown is as it last was, and nothing of a run is lost: " +
+      "start hpsop-explore again (or its tunnel), and this page goes on by itself." : "";
+    if (gone.textContent !== wanted) gone.textContent = wanted;
+    gone.style.display = wanted ? "block" : "none";
+  }
+  const asking = setInterval(alive, 3000);
+  disposers.push(() => clearInterval(asking));
+
   // ---- messages to Python: a hidden text input whose value is a JSON list of the latest events -------------------
   let sequence = Date.now() * 8;
   let timer = null;
@@ -53,6 +83,7 @@
     if (H.channelId !== channelId) { H.channelId = channelId; H.outbox = []; }
     H.send({ t: "hello", browser: H.browser, width: innerWidth, height: innerHeight });
     place();
+    title();
     // panels mount one after another
     [100, 500, 1500].forEach((delay) => setTimeout(restoreTabs, delay));
   };
@@ -114,6 +145,7 @@
     if (mode !== "none") event.preventDefault();
   }, true);
   let hovered = null;
+  let still = null;
   listen(document, "pointermove", (event) => {
     if (drag) {
       if (Math.abs(event.clientX - drag.x) + Math.abs(event.clientY - drag.y) > 4) drag.moved = true;
@@ -143,6 +175,8 @@
     }
     hovered = svg.dataset.chart;
     H.pointer = [event.clientX, event.clientY];
+    if (still && Math.abs(event.clientX - still[0]) + Math.abs(event.clientY - still[1]) < 8) return;
+    still = null;
     const p = point(svg, event);
     if (p.inside) H.send({ t: "hover", chart: hovered, x: p.x, y: p.y, fx: p.fx, fy: p.fy, soft: 1 });
     else hideTip();
@@ -164,7 +198,12 @@
         Math.abs(event.clientX - clicked.x) + Math.abs(event.clientY - clicked.y) < 6;
       clicked = near ? null : { chart: done.chart, at: event.timeStamp, x: event.clientX, y: event.clientY };
       if (near && svg.dataset.drag) H.send({ t: "reset", chart: done.chart });
-      else if (svg.dataset.click) H.send({ t: "click", chart: done.chart, x: p.x, y: p.y, fx: p.fx, fy: p.fy });
+      else if (svg.dataset.click) {
+        // what a click has chosen is to be seen: the card stays away until the pointer goes elsewhere
+        hideTip();
+        still = [event.clientX, event.clientY];
+        H.send({ t: "click", chart: done.chart, x: p.x, y: p.y, fx: p.fx, fy: p.fy });
+      }
     }
   }, true);
   // A button may be redrawn between press and release, and the browser then drops its click: what was pressed and what
@@ -214,6 +253,23 @@
     H.send({ t: "key", key: event.key, chart: H.active || hovered || "" });
   }, true);
 
+  // ---- number boxes: one for each bound ---------------------------------------------------------------------------
+  listen(document, "change", (event) => {
+    const box = event.target;
+    if (!box.dataset || !box.dataset.set) return;
+    H.send({ t: "act", name: box.dataset.set, arg: box.dataset.arg + "=" + box.value });
+    // one that was refused is not drawn anew: it goes back to what holds
+    setTimeout(() => { if (box.isConnected && box.value !== box.defaultValue) box.value = box.defaultValue; }, 1500);
+    if (document.activeElement !== box) return;
+    // the answer draws the box anew: who steps with the arrow keys goes on in it
+    const again = setInterval(() => {
+      if (document.activeElement !== document.body) return;
+      const drawn = document.querySelector('[data-set][data-arg="' + box.dataset.arg + '"]');
+      if (drawn) drawn.focus();
+    }, 40);
+    setTimeout(() => clearInterval(again), 1500);
+  }, true);
+
   // ---- tooltip ---------------------------------------------------------------------------------------------------
   const tip = document.createElement("div");
   tip.className = "hpsop-tip";
@@ -223,7 +279,7 @@
   H.tip = function (marker) {
     const source = marker.previousElementSibling;
     marker.remove();
-    if (!source || !hovered || source.dataset.chart !== hovered || drag) return hideTip();
+    if (!source || !hovered || still || source.dataset.chart !== hovered || drag) return hideTip();
     if (!source.innerHTML.trim()) return hideTip();
     tip.innerHTML = source.innerHTML;
     tip.style.display = "block";
@@ -282,7 +338,7 @@
     document.documentElement.style.setProperty("--hpsop-left", left + "px");
     document.documentElement.style.setProperty("--hpsop-right", innerWidth - right + "px");
   }
-  const ticker = setInterval(place, 700);
+  const ticker = setInterval(() => { place(); title(); }, 700);
   disposers.push(() => clearInterval(ticker));
   let resizeTimer = null;
   listen(window, "resize", () => {

@@ -8,13 +8,14 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from explorer.state.run_picture import GenerationPicture, RunPicture
+from explorer.state.run_picture import ACTIVE, GenerationPicture, RunPicture
 from hpsop_core.charts.axis import Limits, padded
 from hpsop_core.charts.frame import Key
 from hpsop_core.charts.looks import Sheet
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.search import COINCIDENT, Cloud, Front, Mark, draw_marks, family_front
 from hpsop_core.charts.search import pareto_chart as drawn_chart
+from hpsop_core.evaluation.levels import FAST, LEVEL_NUMBERS
 from hpsop_core.markup import Markup
 from hpsop_core.optimization.families import families, half_widths, narrow
 
@@ -107,9 +108,10 @@ def pareto_background(
     f = picture.objectives
     archive = drawn.rows[~drawn.front]
     clouds = []
+    kept = archive[picture.feasible[archive] & ~picture.by_hand[archive]]
     for css, rows in (
         ("infeasible", archive[~picture.feasible[archive]]),
-        ("archive", archive[picture.feasible[archive] & ~picture.by_hand[archive]]),
+        *((f"archive level{level}", kept[picture.level[kept] == level]) for level in LEVEL_NUMBERS),
     ):
         for inside, style in ((False, "opacity:.18"), (True, "opacity:.75")):
             clouds.append(Cloud(f[rows[keep[rows] == inside]], css, style=style))
@@ -161,6 +163,69 @@ def newest_families(
     return rows, tuple(int(name) for name in families(f[rows], widths)), narrow(f[rows], widths)
 
 
+@dataclass(frozen=True)
+class Beyond:
+    """Feasible designs that dominate a drawn front of their own level: no chart may show them without a word.
+
+    Attributes:
+        count: how many.
+        most: by how much the best of them is better in both objectives at once, as a part of the initial design's.
+        reasons: why they are not on the front, a sentence a level.
+    """
+
+    count: int = 0
+    most: float = 0.0
+    reasons: tuple[str, ...] = ()
+
+
+def beyond_fronts(picture: RunPicture, generation: int | None = None) -> Beyond:
+    """What is said of feasible designs that dominate a drawn front of their own level."""
+    count, most, reasons = 0, 0.0, []
+    for item in _fronts(picture, generation):
+        own = picture.feasible & (picture.level == item.level)
+        if generation is not None:
+            own &= picture.generation <= generation
+        front = picture.objectives[picture.rows(item.front)]
+        found = np.flatnonzero(own)
+        if not len(found) or not len(front):
+            continue
+        gain = front[None, :, :] - picture.objectives[found][:, None, :]
+        least, greatest = gain.min(axis=2), gain.max(axis=2)
+        better = ((least >= 0.0) & (greatest > 0.0)).any(axis=1)
+        if better.any():
+            count += int(better.sum())
+            most = max(most, float(least.max()))
+            reasons.append(_why_beyond(picture, item.level, found[better]))
+    return Beyond(count, most, tuple(reasons))
+
+
+def _why_beyond(picture: RunPicture, level: int, rows: NDArray[np.int64]) -> str:
+    settings = picture.case.optimization
+    found = "1 feasible design" if len(rows) == 1 else f"{len(rows)} feasible designs"
+    who = f"{found} of level {level} better than its front"
+    margin, cavitation = settings.handover_margin, picture.column("g_cavitation")
+    hand = int(picture.by_hand[rows].sum())
+    avoided = 0
+    if level == FAST.number and settings.level1_generations < settings.generations and margin > 0.0:
+        values = np.full(len(rows), np.nan) if cavitation is None else cavitation[rows]
+        # where a table does not tell, the margin is the reason that there is
+        avoided = int((~(values <= -margin) & ~picture.by_hand[rows]).sum())
+    reasons = []
+    if avoided:
+        reasons.append(
+            f"{avoided if avoided < len(rows) else 'all'} within the hand-over margin: before level 2 comes the search "
+            f"keeps {margin:g} of blade area ratio from the cavitation limit, where level 2 asks for more thrust"
+        )
+    if hand:
+        reasons.append(f"{hand} made by hand, which the search does not breed from")
+    if len(rows) > avoided + hand:
+        reasons.append(
+            f"{len(rows) - avoided - hand} no longer in the population, whose newest front is drawn; the archive keeps "
+            "them"
+        )
+    return f"{who}: {'; '.join(reasons)}."
+
+
 def _fixed_marks(picture: RunPicture, options: ParetoOptions) -> list[Mark]:
     f = picture.objectives
     marks = [
@@ -192,7 +257,9 @@ def pareto_chart(picture: RunPicture, background: Plot, marks: Sequence[Mark], k
     plot.keys += keys
     draw_marks(plot, marks)
     if not len(picture.ids) and len(marks) <= 2:
-        plot.message("No designs yet.\nPress Start: each generation's front appears here.", numbers=True)
+        begun = picture.status in ACTIVE
+        words = "The first designs are being evaluated:" if begun else "No designs yet.\nPress Start:"
+        plot.message(f"{words} each generation's front appears here.", numbers=True)
     return plot.svg("pareto", 'data-drag="pan" data-hover="1" data-click="1" data-box="1" tabindex="0"')
 
 

@@ -79,8 +79,14 @@ class Designs:
         return Shown("Initial design", evaluation, kind="initial")
 
     def first(self) -> Shown:
-        """What is seen first of the case or run on display."""
+        """The initial design at the level that the run has reached."""
         return self.initial(self._display.picture.current_level)
+
+    def best(self) -> Shown:
+        """What a run is opened at: its compromise, or the initial design before there is one."""
+        chosen = self._display.picture.compromise
+        shown = self.shown(chosen) if chosen is not None else None
+        return shown if shown is not None and shown.evaluation.ok else self.first()
 
     def whatif(self, variables: DesignVariables, level: int = 1) -> Shown:
         """A design of the user's own making, evaluated now."""

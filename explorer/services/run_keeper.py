@@ -304,9 +304,10 @@ class RunKeeper:
                 *all_quantities(condition_names(case)),
             )
             self._table = np.zeros((0, len(self._quantities)))
-        status, message = self._status(reader)
+        driven = self.driven
+        status, message = self._status(reader, driven)
         if reader is None:
-            return RunPicture(self.path.name, case, status, message, self.driven)
+            return RunPicture(self.path.name, case, status, message, driven)
         generations = tuple(
             GenerationPicture(item.number, item.level, item.members, item.front, item.hypervolume)
             for item in reader.generations()
@@ -323,7 +324,7 @@ class RunKeeper:
             case=case,
             status=status,
             message=message,
-            live=self.driven,
+            live=driven,
             ids=self._ids,
             level=self._rows[:, 0].astype(np.int64),
             generation=self._rows[:, 1].astype(np.int64),
@@ -387,9 +388,9 @@ class RunKeeper:
         asked = reader.generation(finished)
         return max(asked.asked) if asked is not None and asked.asked else 0
 
-    def _status(self, reader: RunReader | None) -> tuple[str, str]:
+    def _status(self, reader: RunReader | None, driven: bool) -> tuple[str, str]:
         controller = self._controller
-        if controller is not None and controller.running:
+        if controller is not None and driven:
             snapshot = controller.snapshot()
             status = _STATES.get(snapshot.state, RUNNING)
             if self._stop_asked and status in ACTIVE:
@@ -402,4 +403,7 @@ class RunKeeper:
         if reader is None:
             return IDLE, ""
         state, reason = reader.state()
+        if controller is not None and _STATES.get(state, state) in ACTIVE:
+            # it is this program that holds the file: the run begins or has just ended, and nobody else drives it
+            return STOPPED, reason
         return _STATES.get(state, state), reason or self._shape

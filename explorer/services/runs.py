@@ -117,7 +117,7 @@ class Runs:
         self._designs.read_from(keeper)
         if old is not None:
             old.close()
-        self._display.show_run(picture, self._designs.first)
+        self._display.show_run(picture, self._designs.best)
         self._display.tell_all("library")
 
     def news(self) -> None:

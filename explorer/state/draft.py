@@ -122,6 +122,24 @@ class Draft:
             upper = min(round(upper + reach, 10), variable.rule.upper)
         self.set("bounds", name, (variable.typed(lower), variable.typed(upper)))
 
+    def set_bound(self, name: str, side: str, value: float) -> None:
+        """Set a variable's "lower" or "upper" bound.
+
+        Raises:
+            InputError: not within the variable's rule, or beyond the other bound.
+        """
+        variable = VARIABLE_TABLE[name]
+        lower, upper = self.value("bounds", name)
+        whole = variable.whole and math.isfinite(value) and value == round(value)
+        new = checked_value(variable.typed(value) if whole else value, variable.rule, variable.symbol)
+        if (side == "lower" and new > upper) or (side == "upper" and new < lower):
+            shown = variable.shown(upper if side == "lower" else lower)
+            raise InputError(
+                f"{variable.symbol}: the lower bound cannot lie above the upper one, which needs "
+                f"{'at most' if side == 'lower' else 'at least'} {shown:g}"
+            )
+        self.set("bounds", name, (new, upper) if side == "lower" else (lower, new))
+
     def case(self) -> Case:
         """The whole case.
 

@@ -24,6 +24,8 @@ _MOST_STARS = 500
 _SCENE_SETTLES = 0.06
 # width of the left dock, px
 LEFT_DOCK = 340
+# windows narrower than this (px) show the left dock when asked, and the right one has this part of them
+_NARROW, _NARROW_SHARE = 1200, 0.44
 # sides of a browser's window that can be meant, px
 _LEAST_SIDE, _MOST_SIDE = 100, 20000
 
@@ -98,8 +100,19 @@ class Session:
 
     @property
     def dock_width(self) -> int:
-        """Of the right dock in px: a large screen gives its charts more room, a small one keeps the 3D view usable."""
-        return min(max(490, round(0.31 * self.size[0])), 620)
+        """Of the right dock in px: a large screen gives its charts more room, a small one leaves half to the ship."""
+        width = min(max(490, round(0.31 * self.size[0])), 620)
+        return min(width, round(_NARROW_SHARE * self.size[0])) if self.narrow else width
+
+    @property
+    def narrow(self) -> bool:
+        """Whether the window is so narrow that the left dock is closed at first, to leave half of it to the ship."""
+        return self.size[0] < _NARROW
+
+    @property
+    def left_dock(self) -> int:
+        """Width of the left dock in px, as the page puts it."""
+        return 0 if self.narrow else LEFT_DOCK
 
     @property
     def chart_width(self) -> float:

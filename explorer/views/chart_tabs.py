@@ -62,18 +62,21 @@ def _resistance(session: Session, designs: Designs) -> Markup:
     complete = len(curves) == len(overlaid(session, designs))
     waiting = "" if complete else " The other designs' curves are being computed …"
     points = [(look, found.points, evaluation) for look, evaluation, found in curves]
+    knots = session.picture.case.conditions.speeds_are_fixed
     return fill(
-        '{}{}<p class="soft">Level {}, each at its own Froude number; marks are the conditions.{}</p>',
-        resistance_chart(points, "total", sheet).svg("resistance_total"),
-        resistance_chart(points, "wave", sheet).svg("resistance_wave"),
+        '{}{}<p class="soft">Level {}, {}; marks are the conditions.{}</p>',
+        resistance_chart(points, "total", sheet, knots=knots).svg("resistance_total"),
+        resistance_chart(points, "wave", sheet, knots=knots).svg("resistance_wave"),
         level,
+        "all at the same speeds" if knots else "each at its own Froude number",
         waiting,
     )
 
 
 def _thrust(session: Session, designs: Designs) -> Markup:
     curves = [(look, found.thrust, evaluation) for look, evaluation, found in _with_curves(session, designs)]
-    return thrust_chart(curves, _sheet(session, 0.30)).svg("thrust")
+    knots = session.picture.case.conditions.speeds_are_fixed
+    return thrust_chart(curves, _sheet(session, 0.30), knots=knots).svg("thrust")
 
 
 def _engine(session: Session, designs: Designs) -> Markup:

@@ -9,10 +9,11 @@ from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.views.chips import GAP, box, chip, chips, soft
+from explorer.views.headline import traffic_lights
 from explorer.views.on_display import select_design
 from explorer.views.tables import comparison_table, headline, warnings_html
 from hpsop_core.markup import fill
-from hpsop_core.quantities import condition_names
+from hpsop_core.quantities import condition_names, conditions_of
 
 
 class DesignView:
@@ -72,6 +73,7 @@ class DesignView:
                 ),
                 row,
                 warnings_html(shown),
+                traffic_lights(picture.case, shown, conditions_of(shown.evaluation)),
                 table,
             )
         )

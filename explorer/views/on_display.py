@@ -16,9 +16,13 @@ def select_design(session: Session, designs: Designs, design_id: int) -> None:
 
 
 def select_first(session: Session, designs: Designs) -> None:
-    """Select the initial design where nothing is selected yet."""
-    if session.selected is None:
-        session.select(designs.first())
+    """Where nothing is selected yet: a run's compromise, the initial design its ghost, else the initial design."""
+    if session.selected is not None:
+        return
+    first = designs.best()
+    if first.kind != "initial":
+        session.set_options(ghost=True)
+    session.select(first)
 
 
 def ghost_of(session: Session, designs: Designs) -> tuple[Shown | None, int | None]:

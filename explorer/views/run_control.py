@@ -33,6 +33,7 @@ class RunControl:
             ("adopt", lambda event: self._adopt(), "took the shown run's settings over"),
             ("reset_field", lambda event: self._reset(event.arg), ""),
             ("widen", lambda event: self._widen(event.arg), ""),
+            ("bound", lambda event: self._bound(event.arg), ""),
         )
         for name, action, told in actions:
             session.gestures.on("act", name, self._guarded(action, told))
@@ -64,6 +65,21 @@ class RunControl:
         if name not in VARIABLE_TABLE or side not in ("lower", "upper"):
             raise InputError(f"widen: {argument[:40]!r} is no bound")
         self._app.change_draft(lambda draft: draft.widen(name, side), whole=True)
+
+    def _bound(self, argument: str) -> None:
+        """A bound typed into its box: "length_to_breadth.upper=8.2", in SI units."""
+        place, _, text = argument.partition("=")
+        name, _, side = place.partition(".")
+        if name not in VARIABLE_TABLE or side not in ("lower", "upper"):
+            raise InputError(f"bounds: {place[:40]!r} is no bound")
+        try:
+            value = round(float(text) / VARIABLE_TABLE[name].scale, 10)
+            self._app.change_draft(lambda draft: draft.set_bound(name, side, value))
+        except ValueError:
+            raise InputError(f"{VARIABLE_TABLE[name].symbol}: {text[:20]!r} is no number; write one as 8.2") from None
+        finally:
+            # the slider follows the box, and a refused box its slider
+            self._app.hub.changed("settings")
 
     def _delete(self, name: str) -> None:
         if self._app.asked_to_delete != name:

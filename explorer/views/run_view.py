@@ -81,8 +81,9 @@ class RunView:
         self._status.show(
             box(
                 fill(
-                    '<div class="status" data-run-status="{status}" data-generation="{count}">'
+                    '<div class="status" data-run-name="{file}" data-run-status="{status}" data-generation="{count}">'
                     '<b class="state-{status}">{word}</b> {name}<span class="gap"></span></div>',
+                    file=picture.name,
                     status=status,
                     count=len(picture.generations),
                     word=word,

@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 import threading
 import time
+from collections import deque
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from explorer.scene.geometry import SceneGeometry, without_deck
 from explorer.scene.surroundings import backdrop, calm_water
 from explorer.server.bridge import PageEvent
 from explorer.services.designs import Designs
-from explorer.state.session import LEFT_DOCK, Session
+from explorer.state.session import Session
 from explorer.views.on_display import ghost_of
 from hpsop_core.errors import HpsopError
 
@@ -49,7 +50,9 @@ class SceneView:
         self._drawn: tuple[object, ...] = ()
         self._geometry: SceneGeometry | None = None
         self._framed: tuple[float, float, float] | None = None
-        self._placed: np.ndarray | None = None
+        # where the camera was last put, and for a view of which shape
+        self._placed: deque[np.ndarray] = deque(maxlen=4)
+        self._framed_for = 0.0
         self._told, self._docked = 0.0, False
         self._abeam = 0.0
         self._spinning = threading.Event()
@@ -232,11 +235,10 @@ class SceneView:
             self.place_camera()
 
     def _unmoved(self) -> bool:
-        placed = self._placed
-        if placed is None:
-            return True
-        return float(np.linalg.norm(np.asarray(self._client.camera.position) - placed)) < 1e-3 * float(
-            np.linalg.norm(placed)
+        now = np.asarray(self._client.camera.position)
+        # a browser's word about its shape may be older than the last of these
+        return not self._placed or any(
+            float(np.linalg.norm(now - placed)) < 1e-3 * float(np.linalg.norm(placed)) for placed in self._placed
         )
 
     def _aspect(self) -> float:
@@ -246,16 +248,16 @@ class SceneView:
     def _between_docks(self) -> float:
         session = self._session
         width, height = session.size
-        return max(width - LEFT_DOCK - session.dock_width, 200.0) / max(height, 200.0)
+        return max(width - session.left_dock - session.dock_width, 200.0) / max(height, 200.0)
 
     def _looked(self, camera: viser.CameraHandle) -> None:
         """The browser says where its camera is: a view of another shape is framed anew, unless the user has moved."""
-        before, self._told = self._told, float(camera.aspect)
+        first, self._told = self._told == 0.0, float(camera.aspect)
         # one dock appears after the other, and a browser does not say so while its camera rests
         self._docked = self._docked or 0.0 < self._told < 1.1 * self._between_docks()
         # a browser's first word is where its camera stood before it heard of ours
-        other = self._docked and abs(self._told - before) > 0.02 * self._told and self._unmoved()
-        if before == 0.0 or other:
+        other = self._docked and abs(self._told - self._framed_for) > 0.02 * self._told and self._unmoved()
+        if first or other:
             self._session.worker.latest("camera", self.place_camera)
 
     def place_camera(self) -> None:
@@ -263,12 +265,13 @@ class SceneView:
         geometry, framed = self._geometry, self._framed
         if geometry is None or framed is None:
             return
+        self._framed_for = self._aspect()
         pose = preset(
             self._session.options.camera,
             *framed,
             (float(geometry.propeller_position[0]), float(geometry.propeller_position[2])),
             geometry.diameter,
-            self._aspect(),
+            self._framed_for,
             self._abeam,
         )
         camera = self._client.camera
@@ -279,7 +282,7 @@ class SceneView:
             camera.position = pose.position
             camera.look_at = pose.look_at
             camera.fov = pose.field_of_view
-        self._placed = np.asarray(pose.position, dtype=float)
+        self._placed.append(np.asarray(pose.position, dtype=float))
 
     # ---- spin ------------------------------------------------------------------------------------------------------
     def _spin(self) -> None:

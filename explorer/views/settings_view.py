@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import re
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -29,7 +30,7 @@ from hpsop_core.case.fields import checked_value, rules
 from hpsop_core.case.variables import ON_BOUND, VARIABLE_TABLE
 from hpsop_core.errors import InputError
 from hpsop_core.markup import Markup, fill, joined
-from hpsop_core.quantities import number_text, variable_quantities
+from hpsop_core.quantities import Quantity, variable_quantities
 
 # A field is typed digit by digit; what cannot be taken is refused when the typing has rested so long.
 _TYPING_SECONDS = 1.5
@@ -72,6 +73,8 @@ class SettingsView:
             )
             for key in VARIABLE_TABLE:
                 self._add_slider(key)
+            # below the sliders, which must not move away from under the mouse at the first drag
+            self._changed = Slot(gui)
             self._around = gui.add_button(
                 "Bounds around the initial design",
                 color="gray",
@@ -137,7 +140,7 @@ class SettingsView:
         try:
             self.set_bounds(key, event.target.value)
         except InputError as error:
-            self._app.refuse(event.client_id or 0, str(error))
+            self._app.refuse(event.client_id or 0, self.in_words(str(error)))
             self._show_bounds(key)
 
     def _show_bounds(self, key: str) -> None:
@@ -221,7 +224,7 @@ class SettingsView:
             return
         # taken back before it is told: who reads the words sees the field as it is
         self._show_field(section, name)
-        self._app.refuse(client_id, why)
+        self._app.refuse(client_id, self.in_words(why))
         self._app.change_draft(lambda draft: draft.release(section, name))
 
     def set_field(self, section: str, name: str, value: Any) -> None:
@@ -288,6 +291,13 @@ class SettingsView:
             self._show_field(section, field)
         self.draw()
 
+    def in_words(self, message: str) -> str:
+        """A message of the case, whose fields are called here as on the page: "Population: ..." """
+        found = re.match(r"(\w+): (\w+)", message)
+        section, name = found.groups() if found else ("", "")
+        label = VARIABLE_TABLE[name].symbol if name in VARIABLE_TABLE else self._labels.get((section, name), "")
+        return f"{label}{message[found.end() :]}" if found and label else message
+
     def _title(self, section: str, name: str) -> str:
         if section == "bounds":
             return VARIABLE_TABLE[name].symbol
@@ -303,7 +313,7 @@ class SettingsView:
             draft.case()
             trouble = NOTHING
         except InputError as error:
-            trouble = fill('<p class="bad">{}</p>', error)
+            trouble = fill('<p class="bad">{}</p>', self.in_words(str(error)))
         count = draft.count()
         changed = NOTHING
         if count:
@@ -313,7 +323,8 @@ class SettingsView:
                 for name in fields
             )
             changed = joined([soft("Changed (●):"), chips(*words)])
-        self._about.show(box(fill("<p><b>{}</b></p>", draft.base.title), soft(lines), changed, trouble))
+        self._about.show(box(fill("<p><b>{}</b></p>", draft.base.title), soft(lines), trouble))
+        self._changed.show(box(changed) if count else NOTHING)
         self._trouble.show(box(trouble) if trouble else NOTHING)
         self._reset.visible = count > 0
         for (section, name), widget in self._widgets.items():
@@ -323,19 +334,37 @@ class SettingsView:
         for quantity in variable_quantities(self._app.draft.initial()):
             shown = VARIABLE_TABLE[quantity.key].shown
             low, high = draft.value("bounds", quantity.key)
-            a, b = number_text(shown(low), quantity.decimals), number_text(shown(high), quantity.decimals)
             unit = f" {quantity.unit}" if quantity.unit else ""
             mark = " ●" if draft.changed("bounds", quantity.key) else ""
-            text = f"fixed at {a}{unit}" if low == high else f"{a} … {b}{unit}"
             self._readouts[quantity.key].show(
                 fill(
-                    '<div class="hp readout" data-variable="{}"><span>{}</span><span class="level">{}</span>{}</div>',
+                    '<div class="hp readout" data-variable="{}"><span>{} … {}{}{}</span><span class="level">{}</span>'
+                    "{}</div>",
                     quantity.key,
-                    text,
+                    self._box(quantity, "lower", shown(low)),
+                    self._box(quantity, "upper", shown(high)),
+                    unit,
+                    fill(" {}", "fixed") if low == high else NOTHING,
                     mark,
                     self._pressed(quantity.key),
                 )
             )
+
+    def _box(self, quantity: Quantity, side: str, value: float) -> Markup:
+        """A number box for one bound: to be typed into, and stepped by the arrow keys."""
+        variable = VARIABLE_TABLE[quantity.key]
+        step = variable.scale * variable.step_near(getattr(self._app.draft.initial(), quantity.key))
+        return fill(
+            '<input type="number" class="bound" data-set="bound" data-arg="{}.{}" value="{:.{}f}" step="{:g}" '
+            'aria-label="{}, {} bound">',
+            quantity.key,
+            side,
+            value,
+            quantity.decimals,
+            step,
+            quantity.label,
+            side,
+        )
 
     def _pressed(self, key: str) -> Markup:
         """How much of the newest front stands on a variable's bounds, with a button that moves the bound out."""

@@ -15,6 +15,7 @@ from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.state.shown import Shown
 from explorer.views.chips import NOTHING, chip, chips, soft
+from explorer.views.headline import headline_card
 from explorer.views.on_display import ghost_of
 from explorer.views.tables import headline
 from hpsop_core.errors import HpsopError
@@ -105,8 +106,9 @@ class ToolbarView:
         if evaluation.ok:
             hull = evaluation.hull
             facts = fill(
-                "L<sub>PP</sub> {:.1f} m · B {:.2f} m · d {:.2f} m · C<sub>B</sub> {:.3f} · ∇ {} m³<br>"
+                "{}L<sub>PP</sub> {:.1f} m · B {:.2f} m · d {:.2f} m · C<sub>B</sub> {:.3f} · ∇ {} m³<br>"
                 "D {:.2f} m · Z {} · f₁ {} · f₂ {}",
+                headline_card(self._session.picture.case, self._designs.initial(evaluation.level), shown),
                 hull.length,
                 hull.breadth,
                 hull.draft,

@@ -69,9 +69,13 @@ def _diameter_to_draft_asked(case: Case) -> str:
     return f"D/d from {limits.diameter_to_draft_lower:.2f} to {limits.diameter_to_draft_upper:.2f}"
 
 
+def is_judged(index: int, case: Case) -> bool:
+    """Whether cavitation is judged at the condition of this index."""
+    return case.constraints.cavitation_conditions == "all" or index == 0
+
+
 def _judged(design: DesignNumbers, case: Case) -> tuple[ConditionResult, ...]:
-    """The conditions at which cavitation is judged."""
-    return design.conditions if case.constraints.cavitation_conditions == "all" else design.conditions[:1]
+    return tuple(condition for index, condition in enumerate(design.conditions) if is_judged(index, case))
 
 
 def _where_judged(case: Case) -> str:

@@ -156,6 +156,11 @@ class ConditionsSection:
             shares = f"; write for example [{', '.join(_shares(self.weights))}]" if total > 0.0 else ""
             raise InputError(f"conditions: weights sum to {total:g}; they must sum to 1{shares}")
 
+    @property
+    def speeds_are_fixed(self) -> bool:
+        """Whether every design sails at the same speeds: knots then say more than each design's own Froude number."""
+        return self.speed == "fixed"
+
     @classmethod
     def completed(cls, table: Mapping[str, object]) -> dict[str, object]:
         """A case file's table with what follows from it: whoever states speeds in knots gives no Froude numbers."""

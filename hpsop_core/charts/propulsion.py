@@ -1,4 +1,4 @@
-"""Charts of hull and propeller together: open water over J, resistance and thrust over Froude number."""
+"""Charts of hull and propeller together: open water over J, resistance and thrust over speed."""
 
 from __future__ import annotations
 
@@ -6,6 +6,8 @@ from collections.abc import Sequence
 
 import numpy as np
 
+from hpsop_core.case.case import KNOT
+from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.charts.axis import Axis, Limits, padded
 from hpsop_core.charts.looks import Look, Published, Sheet, draw_published
 from hpsop_core.charts.plot import Plot
@@ -15,7 +17,8 @@ from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import fill
 from hpsop_core.typing_aliases import Array
 
-_FROUDE_RANGE = (0.16, 0.3)
+_EMPTY_RANGE = (0.16, 0.3)
+_FEW_CONDITIONS = 3
 _HIGHEST = 1.4
 _FEW = 2
 _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
@@ -70,7 +73,7 @@ def _conditions(plot: Plot, look: Look, evaluation: Evaluation, j: Array, main: 
         if main or look.role == "initial":
             visible = np.where(needed <= 1.6 * thrust, needed, np.nan)
             plot.line(j, visible, f"required {look.role}", name=f"required KT, condition {number}, {look.name}")
-        label = f"{look.name}: J{str(number).translate(_SUBSCRIPTS)} {at:.4f}"
+        label = f"{look.name}, {condition.speed / KNOT:.4g} kn: J{str(number).translate(_SUBSCRIPTS)} {at:.4f}"
         series = f"operating point, condition {number}, {look.name}"
         plot.mark(at, thrust, "circle", 3.6, look.role, title=f"{label}, KT {thrust:.4f}", name=f"KT, {series}")
         plot.mark(at, efficiency, "circle", 3.0, look.role, title=f"{label}, η₀ {efficiency:.4f}", name=f"η₀, {series}")
@@ -101,61 +104,80 @@ def resistance_chart(
     which: str,
     sheet: Sheet,
     published: Sequence[Published] = (),
+    knots: bool = False,
 ) -> Plot:
-    """Wave ("wave") or total ("total") resistance against Froude number, the conditions marked."""
+    """Wave ("wave") or total ("total") resistance over speed, the conditions marked.
+
+    Args:
+        designs: what is compared.
+        which: "wave" or "total".
+        sheet: size and style.
+        published: points to draw in, over Froude number.
+        knots: over the speed in knots, where all designs sail at the same speeds, instead of each one's Froude number;
+            the legend then has the Froude numbers.
+    """
     name = f"{which}_resistance"
     curves = [
         (
-            np.array([point.froude_number for point in points]),
+            np.array([point.speed / KNOT if knots else point.froude_number for point in points]),
             np.array([1e-6 * getattr(point, name) for point in points]),
         )
         for _, points, _ in designs
     ]
     top = padded([*(v for _, force in curves for v in force), *(v for item in published for v in item.y), 0.0])[1]
     word = "wave resistance R_W [MN]" if which == "wave" else "total resistance R_T [MN]"
-    x = Axis("Froude number Fn [–]", _froude_limits([froude for froude, _ in curves]))
+    x = _speed_axis([speed for speed, _ in curves], knots)
     plot = Plot(sheet.width, sheet.height, x, Axis(word, (0.0, top), 5), margins=(48, 12, 8, 34), style=sheet.style)
     if not designs:
         plot.message(WAITING)
-    for (look, _, evaluation), (froude, force) in zip(designs, curves, strict=True):
-        plot.line(froude, force, look.css, name=look.name, key=look.name, curved=True)
-        for number, condition in enumerate(evaluation.conditions, start=1):
+    for (look, _, evaluation), (speed, force) in zip(designs, curves, strict=True):
+        key = f"{look.name}{_froude_words(evaluation)}" if knots else look.name
+        plot.line(speed, force, look.css, name=look.name, key=key, curved=True)
+        for condition in evaluation.conditions:
             value = getattr(condition, name)
-            title = f"{look.name}, condition {number}: {1e-3 * value:,.0f} kN"
-            plot.mark(condition.froude_number, 1e-6 * value, "circle", 3.6, look.role, title=title)
+            title = f"{look.name}, {_condition_words(condition)}: {1e-3 * value:,.0f} kN"
+            plot.mark(_place(condition, knots), 1e-6 * value, "circle", 3.6, look.role, title=title)
     draw_published(plot, published)
     return plot
 
 
 def thrust_chart(
-    designs: Sequence[tuple[Look, ThrustCurves, Evaluation]], sheet: Sheet, published: Sequence[Published] = ()
+    designs: Sequence[tuple[Look, ThrustCurves, Evaluation]],
+    sheet: Sheet,
+    published: Sequence[Published] = (),
+    knots: bool = False,
 ) -> Plot:
-    """Thrust required by the hull, and given by the propeller at each condition's rate of rotation, against Fn."""
+    """Thrust required by the hull, and given by the propeller at each condition's rate of rotation, over speed.
+
+    Arguments as of ``resistance_chart``.
+    """
     # high enough for the operating points with air above; the steep ends of the curves may leave the chart
     points = [1e-6 * condition.thrust for _, _, evaluation in designs for condition in evaluation.conditions]
     top = 1.5 * max([*points, *(value for item in published for value in item.y)], default=1.0)
-    x = Axis("Froude number Fn [–]", _froude_limits([curves.froude_number for _, curves, _ in designs]))
+    speeds = [curves.speed / KNOT if knots else curves.froude_number for _, curves, _ in designs]
+    x = _speed_axis(speeds, knots)
     y = Axis("thrust T [MN]", (0.0, top), 5)
     plot = Plot(sheet.width, sheet.height, x, y, margins=(48, 12, 8, 34), style=sheet.style)
     if not designs:
         plot.message(WAITING)
     for index, (look, curves, evaluation) in enumerate(designs):
-        froude, main = curves.froude_number, index == len(designs) - 1
+        speed, main = speeds[index], index == len(designs) - 1
         words = f"required, {look.name}"
-        plot.line(froude, 1e-6 * curves.required, look.css, name=words, key=words, curved=True)
+        key = f"{words}{_froude_words(evaluation)}" if knots else words
+        plot.line(speed, 1e-6 * curves.required, look.css, name=words, key=key, curved=True)
         # the published thrust of a run may have fewer conditions than its curves
         for number, (condition, available) in enumerate(zip(evaluation.conditions, curves.available, strict=False), 1):
             rate = f"{condition.rotation_rate_rpm:.1f} rpm"
             force = 1e-6 * available
             name = f"available at {rate}, {look.name}"
-            plot.line(froude, force, f"{look.role} dot thin", name=name, curved=True)
-            title = f"{look.name}, condition {number}: T {1e-3 * condition.thrust:,.0f} kN at {rate}"
-            plot.mark(condition.froude_number, 1e-6 * condition.thrust, "circle", 3.6, look.role, title=title)
+            plot.line(speed, force, f"{look.role} dot thin", name=name, curved=True)
+            title = f"{look.name}, {_condition_words(condition)}: T {1e-3 * condition.thrust:,.0f} kN at {rate}"
+            plot.mark(_place(condition, knots), 1e-6 * condition.thrust, "circle", 3.6, look.role, title=title)
             within = np.flatnonzero(np.isfinite(force) & (force < 0.93 * top))
             if main and within.size:
                 # below its falling end it crosses nothing of its own
                 last = within[-1]
-                at = (float(froude[last]), float(force[last]))
+                at = (float(speed[last]), float(force[last]))
                 plot.text(*at, f"n_{number} = {rate}", look.role, "end", dy=1.3 * sheet.style.note)
     if len(designs) > _FEW:
         plot.line([], [], "soft dot thin", key="available at each condition's n")
@@ -167,5 +189,23 @@ def thrust_chart(
     return plot
 
 
-def _froude_limits(found: Sequence[Array]) -> Limits:
-    return padded(np.concatenate(found), 0.0) if found else _FROUDE_RANGE
+def _speed_axis(found: Sequence[Array], knots: bool) -> Axis:
+    """A speed axis, in knots or Froude numbers, over the points (n,) of every curve."""
+    limits: Limits = padded(np.concatenate(found), 0.0) if found else _EMPTY_RANGE
+    return Axis("speed V [kn]" if knots else "Froude number Fn [–]", limits)
+
+
+def _place(condition: ConditionResult, knots: bool) -> float:
+    return condition.speed / KNOT if knots else condition.froude_number
+
+
+def _condition_words(condition: ConditionResult) -> str:
+    return f"{condition.speed / KNOT:.4g} kn (Fn {condition.froude_number:.3f})"
+
+
+def _froude_words(evaluation: Evaluation) -> str:
+    """A design's own Froude numbers at the conditions, for a legend."""
+    numbers = [f"{condition.froude_number:.3f}" for condition in evaluation.conditions]
+    if not numbers:
+        return ""
+    return f" (Fn {', '.join(numbers) if len(numbers) <= _FEW_CONDITIONS else f'{numbers[0]}–{numbers[-1]}'})"

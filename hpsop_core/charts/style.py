@@ -132,6 +132,8 @@ def style_sheet(style: Style) -> str:
         (" .mark.infeasible", f"fill:none;stroke:{colour['infeasible']};stroke-width:1.2"),
         (" .mark.hand", f"fill:{colour['area']};stroke:{colour['ink']};stroke-width:1.3"),
         (" .dots.infeasible", "opacity:.35"),
+        # paler than the front of the level: a point of the archive is only ever better than its own level's
+        *((f" .dots.archive.{name}", f"stroke:{colour[name]};stroke-opacity:.45") for name in ("level1", "level2")),
         (" .line.required", "stroke-dasharray:2 3;stroke-width:1.2;opacity:.75"),
         (" .dash", "stroke-dasharray:6 3"),
         (" .dot", "stroke-dasharray:1.5 3"),

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
@@ -36,6 +37,10 @@ CURVE_STEP = 0.05
 
 FROUDE_STEP = 0.01
 """Steps of the Froude number in a resistance curve."""
+
+_FASTEST = 0.5
+# a step of the table nearer to a condition than this part of a step would only double it
+_APART = 0.02
 
 # The classic twenty, denser towards the ends where the form changes fast, and the bulb ahead of FP.
 _STATIONS = np.array([-0.2, 0.0, 0.5, 1.0, 1.5, *range(2, 19), 18.5, 19.0, 19.5, 20.0, 20.2])
@@ -92,10 +97,34 @@ def froude_range(evaluation: Evaluation, above: float = FROUDE_MARGIN, step: flo
         step: between them.
     """
     conditions = [condition.froude_number for condition in evaluation.conditions]
+    return tuple(sorted({*_steps(conditions, above, step), *conditions}))
+
+
+def _steps(conditions: Sequence[float], above: float, step: float) -> list[float]:
     slowest = min(conditions)
-    low, high = max(min(SLOWEST, slowest), slowest - FROUDE_MARGIN), min(0.5, max(conditions) + above)
+    low, high = max(min(SLOWEST, slowest), slowest - FROUDE_MARGIN), min(_FASTEST, max(conditions) + above)
     steps = np.arange(np.ceil(low / step), np.floor(high / step) + 1) * step
-    return tuple(sorted({*(round(float(value), 6) for value in steps), *conditions}))
+    return [round(float(value), 6) for value in steps]
+
+
+def common_speeds(
+    case: Case, evaluation: Evaluation, above: float = FROUDE_MARGIN, step: float = FROUDE_STEP
+) -> tuple[float, ...]:
+    """Where a case fixes speeds: a design's Froude numbers at the speeds at which every design is tabulated.
+
+    These are the initial design's of ``froude_range``, less those that this design's own length takes out of range; its
+    conditions are among them.
+    """
+    conditions = [condition.froude_number for condition in evaluation.conditions]
+    scale = conditions[0] / case.froude_numbers[0]
+    low = min(SLOWEST, *conditions)
+    own = [round(scale * froude, 6) for froude in _steps(case.froude_numbers, above, step)]
+    apart = [
+        froude
+        for froude in own
+        if low <= froude <= _FASTEST and all(abs(froude - other) > _APART * step for other in conditions)
+    ]
+    return tuple(sorted({*apart, *conditions}))
 
 
 def resistance_points(
@@ -105,14 +134,20 @@ def resistance_points(
     above: float = FROUDE_MARGIN,
     step: float = FROUDE_STEP,
 ) -> tuple[ResistancePoint, ...]:
-    """Resistance over ``froude_range`` at the evaluation's level, calibrated as the evaluation was.
+    """Resistance over speed at the evaluation's level, calibrated as the evaluation was.
+
+    Where the case fixes speeds, every design is tabulated at the same ones (``common_speeds``), else each over its own
+    ``froude_range``.
 
     Raises:
         SolverFailure: the design failed, or a speed cannot be computed.
     """
     if not evaluation.ok:
         raise SolverFailure("curves", evaluation.reason)
-    froude_numbers = froude_range(evaluation, above, step)
+    if case.conditions.speeds_are_fixed:
+        froude_numbers = common_speeds(case, evaluation, above, step)
+    else:
+        froude_numbers = froude_range(evaluation, above, step)
     return resistance_curve(case, evaluation.variables, evaluation.level, froude_numbers, reference)
 
 
@@ -122,11 +157,13 @@ class ThrustCurves:
 
     Attributes:
         froude_number: (n,) on the design's own length.
+        speed: (n,) in m/s.
         required: (n,) Rt/(1 - t) in N.
         available: one (n,) a condition: T in N at that condition's rate of rotation; NaN outside the open-water curve.
     """
 
     froude_number: Array
+    speed: Array
     required: Array
     available: tuple[Array, ...]
 
@@ -158,6 +195,7 @@ def thrust_curves(case: Case, evaluation: Evaluation, points: tuple[ResistancePo
     )
     return ThrustCurves(
         froude_number=froude_number,
+        speed=speed,
         required=total / (1.0 - deduction),
         available=tuple(available),
     )

@@ -293,6 +293,9 @@ def _propulsion(data: ReportData) -> Markup:
     if not with_curves:
         return paragraph("There are no curves: no design has open-water results.")
 
+    knots = data.case.conditions.speeds_are_fixed
+    over = "over the speed" if knots else "over Froude number on each design's own length"
+
     def open_water() -> Markup:
         return chart_html(
             open_water_chart(with_curves, SHEET),
@@ -307,16 +310,16 @@ def _propulsion(data: ReportData) -> Markup:
             for look, points, evaluation in data.resistance
         ]
         return chart_html(
-            thrust_chart(curves, SHEET),
+            thrust_chart(curves, SHEET, knots=knots),
             "thrust",
             "Thrust that the hull requires, and what the propeller gives at each condition's rate of rotation.",
         )
 
     def resistance(which: str, words: str) -> Markup:
         return chart_html(
-            resistance_chart(data.resistance, which, SMALL_SHEET),
+            resistance_chart(data.resistance, which, SMALL_SHEET, knots=knots),
             f"resistance-{which}",
-            f"{words} over Froude number on each design's own length; dots: the operating conditions.",
+            f"{words} {over}; dots: the operating conditions.",
         )
 
     engine = engine_of(data.case.engine)

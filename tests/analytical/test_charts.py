@@ -230,7 +230,9 @@ def test_every_role_has_a_colour_in_both_styles():
 def test_operating_points_lie_on_the_curves_and_on_the_required_thrust(initial: Evaluation):
     svg = open_water_chart([(Look("initial", "initial", "dash"), initial)], Sheet(480.0, 300.0)).svg("open_water")
     curves = {word: path_of(svg, f"{word}, initial") for word in ("KT", "10KQ", "η₀")}
-    marks = re.findall(r'<path d="M([\d.]+) ([\d.]+)a([\d.]+) [^"]*"[^>]*><title>initial: J(.) [^<]*, (KT|η₀)', svg)
+    marks = re.findall(
+        r'<path d="M([\d.]+) ([\d.]+)a([\d.]+) [^"]*"[^>]*><title>initial, [\d.]+ kn: J(.) [^<]*, (KT|η₀)', svg
+    )
     assert len(marks) == 2 * len(initial.conditions)
     for left, y, radius, which, word in marks:
         x, y = float(left) + float(radius), float(y)

@@ -7,8 +7,10 @@ from collections.abc import Mapping
 import viser
 
 from explorer.charts.pareto import (
+    Beyond,
     ParetoOptions,
     automatic_limits,
+    beyond_fronts,
     newest_families,
     pareto_background,
     pareto_chart,
@@ -20,7 +22,8 @@ from explorer.views.chips import NOTHING, box, soft
 from hpsop_core.charts.frame import Key
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.search import Mark
-from hpsop_core.markup import fill
+from hpsop_core.evaluation.levels import LEVEL_NUMBERS
+from hpsop_core.markup import fill, joined
 from hpsop_core.quantities import objective_title
 
 
@@ -36,6 +39,8 @@ class ParetoChart:
         self._designs = designs
         self._background: tuple[tuple[object, ...], Plot] | None = None
         self._html = Slot(gui)
+        # apart from the chart, which is drawn at every selection: what was opened stays open
+        self._words = Slot(gui)
         self.limits: Limits = ((0.0, 1.0), (0.0, 1.0))
         session.hub.on(("run", "scrub", "filter", "pins", "selection", "zoom pareto", "size", "layers"), self.draw)
         self.draw()
@@ -66,11 +71,16 @@ class ParetoChart:
         key = (picture, options, titles, session.chart_width, self._height())
         if self._background is None or not _same(self._background[0], key):
             self._background = (key, pareto_background(picture, options, titles, session.chart_width, self._height()))
+            self._say_beyond(beyond_fronts(picture, options.generation) if session.archive else Beyond())
         keys = [Key("circle", "level1", "level 1 front")]
         if picture.last_of_level(2) is not None:
             keys.append(Key("circle", "level2", "level 2 front"))
         if session.archive:
-            keys.append(Key("dots", "archive", "archive"))
+            keys += [
+                Key("dots", f"archive level{level}", f"archive, level {level}")
+                for level in LEVEL_NUMBERS
+                if bool((picture.feasible & (picture.level == level)).any())
+            ]
         if session.infeasible:
             keys.append(Key("dots", "infeasible", "infeasible"))
         keys.append(Key("square", "initial", "initial"))
@@ -87,6 +97,24 @@ class ParetoChart:
                 f"×n: n designs that the error of their numbers cannot tell apart; {max(names)} such families."
             )
         self._html.show(box(pareto_chart(picture, self._background[1], self._marks(), keys), words))
+
+    def _say_beyond(self, beyond: Beyond) -> None:
+        if not beyond.count:
+            self._words.show(NOTHING)
+            return
+        who = "1 design" if beyond.count == 1 else f"{beyond.count} designs"
+        self._words.show(
+            box(
+                fill(
+                    '<details class="soft" data-beyond="{}"><summary>{} of the archive better than a drawn front '
+                    "(by {:.2g} % in both at most): why?</summary>{}</details>",
+                    beyond.count,
+                    who,
+                    100.0 * beyond.most,
+                    joined(fill("<p>{}</p>", reason) for reason in beyond.reasons),
+                )
+            )
+        )
 
     def _height(self) -> float:
         return min(max(0.5 * self._session.size[1] - 178.0, 190.0), 400.0)

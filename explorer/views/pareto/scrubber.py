@@ -70,6 +70,9 @@ class Scrubber:
             )
         )
         self._words.show(box(chips(soft(_generation_words(generation, count), "span"), GAP, filtered)))
+        if not count:
+            # of another run, which had some
+            set_value(self._slider, 0)
         self._slider.max = max(count, 1)
         self._slider.min = 1 if count else 0
         self._slider.disabled = count < 2

@@ -1,0 +1,188 @@
+"""What an owner asks first of a design: what it saves and whether it is safe, before and after, with errors."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+from explorer.state.shown import Shown
+from hpsop_core.case.case import KNOT, Case
+from hpsop_core.evaluation.coverage import KEPT, LIMIT, UNCOVERED, VIOLATED, Standing, standings
+from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.markup import Markup, fill, joined
+from hpsop_core.optimization.families import STATED_ERRORS
+from hpsop_core.quantities import change_text, number_text
+
+_MOST_CONDITIONS = 2
+_STATE_WORDS = {KEPT: "kept", LIMIT: "at its limit", VIOLATED: "violated", UNCOVERED: "not covered"}
+
+
+@dataclass(frozen=True)
+class _Line:
+    """One number: what it is, from an evaluation, its unit and digits, has it the solvers' error, by what name."""
+
+    words: str
+    value: Callable[[Evaluation], float | None]
+    unit: str
+    decimals: int
+    solved: bool = True
+    error: str = ""
+
+
+def _power(index: int) -> Callable[[Evaluation], float | None]:
+    return lambda item: 1e-6 * item.conditions[index].delivered_power if index < len(item.conditions) else None
+
+
+def _tonnes(name: str) -> Callable[[Evaluation], float | None]:
+    def get(item: Evaluation) -> float | None:
+        value = getattr(item, name) if item.ok else None
+        return None if value is None else 1e-3 * float(value)
+
+    return get
+
+
+def _hull(name: str) -> Callable[[Evaluation], float | None]:
+    def get(item: Evaluation) -> float | None:
+        value = getattr(item.hull, name) if item.ok else None
+        return None if value is None else float(value)
+
+    return get
+
+
+def _displacement(density: float) -> Callable[[Evaluation], float | None]:
+    # files of before there were masses in them hold the volume
+    return lambda item: 1e-3 * density * item.hull.displaced_volume if item.ok else None
+
+
+def _lines(evaluation: Evaluation, density: float) -> list[_Line]:
+    conditions = evaluation.conditions
+    # the fastest decides the engine, the one of the greatest share the fuel
+    main = {len(conditions) - 1, max(range(len(conditions)), key=lambda index: conditions[index].weight)}
+    chosen = range(len(conditions)) if len(conditions) <= _MOST_CONDITIONS else sorted(main)
+    lines = [
+        _Line(
+            f"delivered power at {conditions[index].speed / KNOT:.1f} kn",
+            _power(index),
+            "MW",
+            1,
+            error=f"delivered_power_{index + 1}",
+        )
+        for index in sorted(chosen, reverse=True)
+    ]
+    lines += [
+        _Line("fuel", _tonnes("fuel_per_hour"), "t/h", 2),
+        _Line("CO₂", _tonnes("carbon_dioxide_per_hour"), "t/h", 2),
+        _Line("displacement", _displacement(density), "t", 0, False),
+        _Line("GM", _hull("metacentric_height"), "m", 2, False),
+    ]
+    return lines
+
+
+def headline_card(case: Case, initial: Shown | None, shown: Shown) -> Markup:
+    """Power, fuel, CO2, displacement and stability, before and after.
+
+    The error is that of a comparison of two designs at their level, as the studies of the solvers state it
+    (``optimization.families``).
+
+    Args:
+        case: of both.
+        initial: the initial design at the same level, or None while it is not known.
+        shown: the selected design.
+    """
+    evaluation = shown.evaluation
+    if not evaluation.ok:
+        return Markup("")
+    before = initial.evaluation if initial is not None and shown.kind != "initial" and initial.evaluation.ok else None
+    rows = []
+    missing = []
+    for line in _lines(evaluation, case.constants.density):
+        value = line.value(evaluation)
+        if value is None:
+            missing.append(line.words)
+            continue
+        old = line.value(before) if before is not None else None
+        text = number_text(value, line.decimals)
+        if line.error in evaluation.errors:
+            # of the number alone: what two designs have in common falls out of the change
+            text += f" ± {number_text(1e-6 * evaluation.errors[line.error], line.decimals)}"
+        change = Markup("")
+        if old is not None:
+            text = f"{number_text(old, line.decimals)} → {text}"
+            words = change_text(old, value, line.decimals)
+            if line.solved:
+                words = words.replace(" %", f" ± {100.0 * STATED_ERRORS[evaluation.level]:.1f} %")
+            tone = "" if not line.solved or words.startswith("0") else "good" if value < old else "bad"
+            change = fill('<span class="{}">{}</span>', tone, words)
+        rows.append(
+            fill(
+                '<tr data-headline="{}"><td>{}</td><td><b>{}</b> {}</td><td>{}</td></tr>',
+                line.words,
+                line.words,
+                text,
+                line.unit,
+                change,
+            )
+        )
+    said = fill('<span class="soft">{}: not stated by the case<br></span>', ", ".join(missing)) if missing else ""
+    return fill('<table class="headline">{}</table>{}', joined(rows), said)
+
+
+def _where(standing: Standing, names: Sequence[str]) -> str:
+    label = standing.constraint.label
+    return label if standing.condition is None else f"{label} at {names[standing.condition]}"
+
+
+def traffic_lights(case: Case, shown: Shown, names: Sequence[str]) -> Markup:
+    """A light for each constraint and condition; what is violated, at its limit or not covered also in words.
+
+    Args:
+        case: what asks the constraints.
+        shown: the selected design.
+        names: of the conditions.
+    """
+    found = standings(case, shown.evaluation)
+    lights, words = [], []
+    for standing in found:
+        where, state = _where(standing, names), _STATE_WORDS[standing.state]
+        lights.append(
+            fill(
+                '<span class="light {}" data-light="{}" title="{}: {}"><i aria-hidden="true"></i>{}</span>',
+                standing.state,
+                standing.constraint.name,
+                where,
+                standing.words or state,
+                _short(standing, names),
+            )
+        )
+        if standing.state == UNCOVERED:
+            words.append(fill("{} ({})", where, standing.words))
+    covered = Markup("")
+    if words:
+        covered = fill(
+            '<p class="standing" data-uncovered="{}">“Feasible” does not cover: {}.</p>',
+            len(words),
+            joined(words, "; "),
+        )
+    return fill('<div class="lights">{}</div>{}', joined(lights), covered)
+
+
+def _short(standing: Standing, names: Sequence[str]) -> str:
+    symbol = standing.constraint.symbol
+    state = {LIMIT: " limit", VIOLATED: " violated", UNCOVERED: " –"}.get(standing.state, "")
+    word = _WORDS.get(standing.constraint.name, symbol)
+    return word + ("" if standing.condition is None else f" {names[standing.condition]}") + state
+
+
+_WORDS = {
+    "displacement": "∇",
+    "diameter_to_draft": "D/d",
+    "cavitation": "blade area",
+    "form": "form",
+    "propeller_clearance": "clear",
+    "back_cavitation": "cavitation",
+    "tip_clearance": "tip",
+    "length": "L",
+    "breadth": "B",
+    "metacentric_height": "GM",
+    "engine": "engine",
+}

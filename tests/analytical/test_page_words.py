@@ -1,0 +1,140 @@
+"""What the page says beside its pictures: speeds that all designs share, what lies beyond a front, what is covered."""
+
+from __future__ import annotations
+
+import dataclasses
+
+import numpy as np
+import pytest
+
+from explorer.charts.pareto import beyond_fronts
+from explorer.services.answers import Answers
+from explorer.state.run_picture import GenerationPicture, RunPicture
+from explorer.state.shown import Shown
+from explorer.views.headline import headline_card, traffic_lights
+from hpsop_core.case.case import KNOT, Case, load_case
+from hpsop_core.charts.looks import Look, Sheet
+from hpsop_core.charts.propulsion import resistance_chart
+from hpsop_core.evaluation.coverage import KEPT, LIMIT, UNCOVERED, VIOLATED, standings
+from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.quantities import conditions_of
+
+
+@pytest.fixture(scope="module")
+def case() -> Case:
+    """The recommended case with stated wave coefficients, so that level 1 needs no level 2."""
+    return load_case("dtc-p4119").replaced(
+        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
+    )
+
+
+@pytest.fixture(scope="module")
+def answers() -> Answers:
+    return Answers()
+
+
+@pytest.fixture(scope="module")
+def longer(case: Case, answers: Answers) -> Evaluation:
+    """A design longer than the initial one: at the same speeds it has smaller Froude numbers."""
+    return answers.evaluate(case, dataclasses.replace(case.initial.variables, length_to_breadth=7.6), 1)
+
+
+# ---- speeds ----------------------------------------------------------------------------------------------------------
+def test_at_fixed_speeds_every_design_is_tabulated_at_the_same_ones(case: Case, answers: Answers, longer: Evaluation):
+    initial = answers.initial(case, 1)
+    first = np.array([point.speed for point in answers.curves(case, initial).points])
+    second = np.array([point.speed for point in answers.curves(case, longer).points])
+    # Froude numbers have six digits
+    assert all(np.min(np.abs(first - speed)) < 2e-6 * speed * 10 for speed in second)
+    assert len(second) > 10
+    assert longer.conditions[0].froude_number < 0.97 * initial.conditions[0].froude_number
+    for condition in longer.conditions:
+        assert np.min(np.abs(second - condition.speed)) < 1e-9
+
+
+def test_a_resistance_chart_in_knots_compares_at_the_same_speed(case: Case, answers: Answers, longer: Evaluation):
+    initial = answers.initial(case, 1)
+    designs = [
+        (Look(name, role), answers.curves(case, item).points, item)
+        for name, role, item in (("initial", "initial", initial), ("longer", "selected", longer))
+    ]
+    plot = resistance_chart(designs, "total", Sheet(480.0, 300.0), knots=True)
+    svg = plot.svg("resistance")
+    assert "speed V [kn]" in svg
+    words = f"{initial.conditions[0].speed / KNOT:.4g} kn (Fn {longer.conditions[0].froude_number:.3f})"
+    assert f"longer, {words}" in svg
+    # the legend says whose Froude number is which
+    assert f"(Fn {longer.conditions[0].froude_number:.3f}, {longer.conditions[1].froude_number:.3f})" in svg
+
+
+# ---- fronts ----------------------------------------------------------------------------------------------------------
+def _picture(
+    case: Case, points: list[tuple[float, float]], cavitation: list[float], front: tuple[int, ...]
+) -> RunPicture:
+    count = len(points)
+    return RunPicture(
+        "run.hpsop",
+        case,
+        ids=np.arange(1, count + 1),
+        level=np.ones(count, dtype=np.int64),
+        generation=np.ones(count, dtype=np.int64),
+        objectives=np.array(points),
+        feasible=np.full(count, True),
+        failed=np.full(count, False),
+        by_hand=np.full(count, False),
+        table=np.array(cavitation)[:, None],
+        columns=("g_cavitation",),
+        generations=(GenerationPicture(1, 1, front, front, 0.1),),
+    )
+
+
+def test_no_design_dominates_a_drawn_front_without_a_word(case: Case):
+    margin = case.optimization.handover_margin
+    points = [(0.9, 0.95), (0.95, 0.9), (0.89, 0.94), (0.94, 0.89), (0.99, 0.99)]
+    said = beyond_fronts(_picture(case, points, [-2 * margin] * 2 + [-0.5 * margin, -2 * margin, -1.0], (1, 2)))
+    assert said.count == 2
+    assert said.most == pytest.approx(0.01)
+    (reason,) = said.reasons
+    assert "1 within the hand-over margin" in reason and f"{margin:g} of blade area ratio" in reason
+    assert "1 no longer in the population" in reason
+
+
+def test_nothing_is_said_where_nothing_lies_beyond(case: Case):
+    points = [(0.9, 0.95), (0.95, 0.9), (0.9, 0.95), (0.91, 0.96)]
+    assert beyond_fronts(_picture(case, points, [-1.0] * 4, (1, 2))).count == 0
+
+
+# ---- what "feasible" covers ------------------------------------------------------------------------------------------
+def test_a_condition_that_is_not_asked_is_uncovered(case: Case, answers: Answers):
+    evaluation = answers.initial(case, 1)
+    cavitation = [item for item in standings(case, evaluation) if item.constraint.name == "cavitation"]
+    assert [item.state for item in cavitation] == [KEPT, UNCOVERED]
+    missing = evaluation.conditions[1].required_expanded_area_ratio - evaluation.propeller.expanded_area_ratio
+    assert cavitation[1].value == pytest.approx(missing)
+    asked = case.replaced("constraints", cavitation_conditions="all")
+    both = [item.state for item in standings(asked, evaluation) if item.constraint.name == "cavitation"]
+    assert both[1] == (VIOLATED if missing > 0 else KEPT)
+    names = conditions_of(evaluation)
+    lights = traffic_lights(case, Shown("Initial design", evaluation, kind="initial"), names)
+    assert f"{names[1]}" in lights and "does not cover" in lights and "the case states no engine" in lights
+
+
+def test_the_states_agree_with_the_constraints_of_the_evaluation(case: Case, longer: Evaluation):
+    found = standings(case, longer)
+    for item in found:
+        value = longer.constraints.get(item.constraint.name)
+        if item.condition is None and item.state != UNCOVERED:
+            assert item.value == value
+            assert (item.state == VIOLATED) == item.constraint.is_violated(value)
+    assert {item.state for item in found} <= {KEPT, LIMIT, VIOLATED, UNCOVERED}
+    assert longer.feasible == all(item.state != VIOLATED for item in found)
+
+
+def test_the_headline_says_before_and_after_with_the_error(case: Case, answers: Answers, longer: Evaluation):
+    initial = answers.initial(case, 1)
+    card = headline_card(case, Shown("Initial design", initial, kind="initial"), Shown("Design 7", longer, 7))
+    before, after = (1e-6 * item.conditions[0].delivered_power for item in (initial, longer))
+    assert f"{before:.1f} → {after:.1f}" in card
+    change = 100.0 * (after / before - 1.0)
+    assert f"{abs(change):.1f} ± 2.0 %" in card
+    assert "GM" in card and "not stated by the case" in card
