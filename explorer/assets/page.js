@@ -42,6 +42,29 @@
   const asking = setInterval(alive, 3000);
   disposers.push(() => clearInterval(asking));
 
+  // ---- names for whoever cannot see: viser's widgets stand beside their labels without being tied to them -----------
+  const heading = document.createElement("h1");
+  heading.className = "hpsop-heading";
+  heading.textContent = "hpsop: hull and propeller, optimised together";
+  (document.getElementById("root") || document.body).prepend(heading);
+  disposers.push(() => heading.remove());
+  const unnamed = "input:not([aria-label]):not([type=hidden]), textarea:not([aria-label]), " +
+    '[role=slider]:not([aria-label]), [role=slider][aria-label=""], [role=progressbar]:not([aria-label]), ' +
+    '[role=progressbar][aria-label=""], .mantine-CloseButton-root:not([aria-label])';
+  function names() {
+    const root = document.getElementById("root");
+    if (root && !root.hasAttribute("role")) root.setAttribute("role", "main");
+    document.querySelectorAll(unnamed).forEach((node) => {
+      let word = node.matches(".mantine-CloseButton-root") ? "close this notice" : "";
+      if (node.getAttribute("role") === "progressbar") word = "progress of the run";
+      for (let up = node.parentElement, level = 0; up && !word && level < 7; up = up.parentElement, level++) {
+        const label = up.querySelector("label[for]");
+        if (label) word = label.textContent.trim();
+      }
+      if (word) node.setAttribute("aria-label", word);
+    });
+  }
+
   // ---- messages to Python: a hidden text input whose value is a JSON list of the latest events -------------------
   let sequence = Date.now() * 8;
   let timer = null;
@@ -314,6 +337,8 @@
     if (!frames[name]) {
       frames[name] = document.createElement("div");
       frames[name].className = "hpsop-overlay hpsop-overlay-" + name;
+      frames[name].setAttribute("role", "region");
+      frames[name].setAttribute("aria-label", name === "toolbar" ? "what the 3D view shows" : "the design shown");
       document.body.appendChild(frames[name]);
       disposers.push(() => frames[name].remove());
     }
@@ -338,7 +363,7 @@
     document.documentElement.style.setProperty("--hpsop-left", left + "px");
     document.documentElement.style.setProperty("--hpsop-right", innerWidth - right + "px");
   }
-  const ticker = setInterval(() => { place(); title(); }, 700);
+  const ticker = setInterval(() => { place(); title(); names(); }, 700);
   disposers.push(() => clearInterval(ticker));
   let resizeTimer = null;
   listen(window, "resize", () => {

@@ -7,6 +7,7 @@ from collections.abc import Callable
 from explorer.server.bridge import PageEvent
 from explorer.services.runs import Runs
 from explorer.state.session import Session
+from explorer.views.settings_fields import in_words
 from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.errors import HpsopError, InputError
 
@@ -43,7 +44,7 @@ class RunControl:
             try:
                 action(event)
             except HpsopError as error:
-                self._session.notify("Not done", str(error), "red")
+                self._session.notify("Not done", in_words(str(error)), "red")
                 return
             if told:
                 self._app.did(self._session, told)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from decimal import Decimal
 
 from hpsop_core.case.declared_variable import Variable, declared_variables
@@ -153,3 +154,13 @@ SEARCH_FIELDS: tuple[tuple[str, str, str], ...] = (
     ("optimization", "level1_generations", "of these level 1"),
     ("optimization", "seed", "Seed"),
 )
+_LABELS = {(section, name): label for _, fields in CASE_FIELDS for section, name, label in fields}
+_LABELS |= {(section, name): label for section, name, label in SEARCH_FIELDS}
+_LABELS |= {("bounds", name): variable.symbol for name, variable in VARIABLE_TABLE.items()}
+
+
+def in_words(message: str) -> str:
+    """A message of the case with its field called as on the page: "Population: 2 is outside its limits"."""
+    found = re.match(r"(\w+): (\w+)", message)
+    label = _LABELS.get((found[1], found[2])) if found else None
+    return f"{label}{message[found.end() :]}" if found and label else message

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import itertools
 import math
-import re
 import threading
 from collections.abc import Callable
 from typing import Any
@@ -22,6 +21,7 @@ from explorer.views.settings_fields import (
     OPEN_FOLDERS,
     SEARCH_FIELDS,
     STEPS,
+    in_words,
     slider_decimals,
     variable_label,
 )
@@ -140,7 +140,7 @@ class SettingsView:
         try:
             self.set_bounds(key, event.target.value)
         except InputError as error:
-            self._app.refuse(event.client_id or 0, self.in_words(str(error)))
+            self._app.refuse(event.client_id or 0, in_words(str(error)))
             self._show_bounds(key)
 
     def _show_bounds(self, key: str) -> None:
@@ -224,7 +224,7 @@ class SettingsView:
             return
         # taken back before it is told: who reads the words sees the field as it is
         self._show_field(section, name)
-        self._app.refuse(client_id, self.in_words(why))
+        self._app.refuse(client_id, in_words(why))
         self._app.change_draft(lambda draft: draft.release(section, name))
 
     def set_field(self, section: str, name: str, value: Any) -> None:
@@ -291,13 +291,6 @@ class SettingsView:
             self._show_field(section, field)
         self.draw()
 
-    def in_words(self, message: str) -> str:
-        """A message of the case, whose fields are called here as on the page: "Population: ..." """
-        found = re.match(r"(\w+): (\w+)", message)
-        section, name = found.groups() if found else ("", "")
-        label = VARIABLE_TABLE[name].symbol if name in VARIABLE_TABLE else self._labels.get((section, name), "")
-        return f"{label}{message[found.end() :]}" if found and label else message
-
     def _title(self, section: str, name: str) -> str:
         if section == "bounds":
             return VARIABLE_TABLE[name].symbol
@@ -313,7 +306,7 @@ class SettingsView:
             draft.case()
             trouble = NOTHING
         except InputError as error:
-            trouble = fill('<p class="bad">{}</p>', self.in_words(str(error)))
+            trouble = fill('<p class="bad">{}</p>', in_words(str(error)))
         count = draft.count()
         changed = NOTHING
         if count:

@@ -95,15 +95,15 @@ def test_settings_that_make_no_case_do_not_start(page, explorer, draft, told):
     weights = field(page, explorer, "conditions", "weights")
     replace_text(page, weights, "0.65, 0.3")
     wait_until(lambda: draft.value("conditions", "weights") == (0.65, 0.3), 20, "the weights")
-    page.wait_for_selector('p.bad:visible:has-text("weights sum to 0.95")')
+    page.wait_for_selector('p.bad:visible:has-text("Shares of time sum to 0.95")')
     press(page, "run_start")
     wait_until(lambda: told, 20, "a notification")
-    assert "weights sum to 0.95; they must sum to 1" in told[0]
+    assert "Shares of time sum to 0.95; they must sum to 1" in told[0]
     assert explorer.state.picture.status == "idle"
     assert not list(explorer.folder.glob("*.hpsop"))
     replace_text(page, weights, "0.6, 0.4")
     wait_until(lambda: draft.value("conditions", "weights") == (0.6, 0.4), 20, "the weights")
-    page.wait_for_selector('p.bad:visible:has-text("weights sum")', state="detached")
+    page.wait_for_selector('p.bad:visible:has-text("Shares of time sum")', state="detached")
     choose_tab(page, "Design space")
 
 
@@ -210,7 +210,8 @@ def test_a_preset_is_chosen_and_its_two_lines_stand(page, explorer, draft):
 
 def test_a_fixed_variable_says_so(page, explorer, draft):
     explorer.settings.set_bounds("draft", (14.2, 14.2))
-    page.wait_for_selector('[data-variable="draft"]:has-text("fixed at 14.2")')
+    page.wait_for_selector('[data-variable="draft"]:has-text("fixed")')
+    assert [float(box.input_value()) for box in page.locator('[data-variable="draft"] input').all()] == [14.2, 14.2]
     page.get_by_role("button", name="Reset changes to the preset").click()
     wait_until(lambda: not draft.changed("bounds", "draft"), 20, "the reset")
     deadline = time.monotonic() + 5.0
