@@ -4,8 +4,7 @@ from __future__ import annotations
 
 import pytest
 from axe_playwright_python.sync_playwright import Axe
-
-from tests.browser.conftest import choose_tab, press
+from conftest import choose_tab, press
 
 _SERIOUS = ("serious", "critical")
 
