@@ -65,7 +65,7 @@ def catalogue() -> tuple[Fault, ...]:
     for path in sorted(Path(__file__).parent.glob("*.toml")):
         for place in tomllib.loads(path.read_text(encoding="utf-8"))["place"]:
             found += [
-                Fault(item["name"], place["file"], item["old"], item["new"], tuple(place["tests"]))
+                Fault(item["name"], place["file"], item["old"], item["new"], tuple(item.get("tests", place["tests"])))
                 for item in place["faults"]
             ]
     return tuple(found)
