@@ -26,6 +26,7 @@ from explorer.views.pareto.picking import ParetoPicking
 from explorer.views.pareto.scrubber import Scrubber
 from explorer.views.run_control import RunControl
 from explorer.views.run_view import RunView
+from explorer.views.saving import Saving
 from explorer.views.scene_view import SceneView
 from explorer.views.settings_view import SettingsView
 from explorer.views.ship_view import ShipView
@@ -73,6 +74,10 @@ def build_shared(app: AppState, services: Services, server: viser.ViserServer) -
 def build_session(session: Session, services: Services, client: viser.ClientHandle) -> None:
     """The right dock and the 3D view of one browser."""
     gui, designs = client.gui, services.designs
+
+    def download(name: str, data: bytes) -> None:
+        client.send_file_download(name, data, save_immediately=True)
+
     guard(gui, session.app.refuse, files=True)
     Uploads(gui, session.app.refuse, services.ships.expect)
     with client.atomic():
@@ -90,18 +95,17 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
         ParallelBrushes(session)
         with pareto:
             Bridge(gui, session.gestures.receive)
-            chart = ParetoChart(session, designs, gui)
+            saving = Saving(session, gui, download)
+            chart = ParetoChart(session, designs, gui, saving)
             Scrubber(session, gui)
             ParetoPicking(session, designs, chart, gui)
             ToolbarView(session, designs, gui, client)
         with tabs["Design"]:
             DesignView(session, designs, gui)
         with tabs["Charts"]:
-            ChartsView(session, designs, gui, chart_tabs())
+            ChartsView(session, designs, gui, chart_tabs(), saving)
         with tabs["Table"]:
-            TableView(
-                session, designs, gui, lambda name, data: client.send_file_download(name, data, save_immediately=True)
-            )
+            TableView(session, designs, gui, download)
         with tabs["Compare"]:
             CompareView(session, designs, gui)
         with tabs["What-if"]:

@@ -327,6 +327,32 @@
     if (box && box.dataset.keep) box.scrollLeft = scrolled[box.dataset.keep] || 0;
   };
 
+  // ---- an SVG drawing as a PNG file: fonts and strokes as this browser draws them ----------------------------------
+  H.picture = function (marker) {
+    const source = marker.previousElementSibling;
+    marker.remove();
+    const drawing = source && source.content && source.content.querySelector("svg");
+    if (!drawing) return;
+    const view = drawing.viewBox.baseVal, scale = Number(source.dataset.scale), name = source.dataset.file;
+    const text = new XMLSerializer().serializeToString(drawing);
+    source.remove();
+    const image = new Image();
+    image.onload = () => {
+      const canvas = document.createElement("canvas");
+      canvas.width = Math.round(view.width * scale);
+      canvas.height = Math.round(view.height * scale);
+      const pen = canvas.getContext("2d");
+      pen.fillStyle = "#ffffff";
+      pen.fillRect(0, 0, canvas.width, canvas.height);
+      pen.drawImage(image, 0, 0, canvas.width, canvas.height);
+      const link = document.createElement("a");
+      link.download = name;
+      link.href = canvas.toDataURL("image/png");
+      link.click();
+    };
+    image.src = "data:image/svg+xml;charset=utf-8," + encodeURIComponent(text);
+  };
+
   // ---- overlays: pieces of HTML that stand over the 3D view instead of in a panel ---------------------------------
   const frames = {};
   H.overlay = function (marker) {

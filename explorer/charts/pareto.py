@@ -16,7 +16,6 @@ from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.search import COINCIDENT, Cloud, Front, Mark, draw_marks, family_front
 from hpsop_core.charts.search import pareto_chart as drawn_chart
 from hpsop_core.evaluation.levels import FAST, LEVEL_NUMBERS
-from hpsop_core.markup import Markup
 from hpsop_core.optimization.families import families, half_widths, narrow
 
 _FRONT_BONUS = 5.0
@@ -244,8 +243,8 @@ def _fixed_marks(picture: RunPicture, options: ParetoOptions) -> list[Mark]:
     return marks
 
 
-def pareto_chart(picture: RunPicture, background: Plot, marks: Sequence[Mark], keys: Sequence[Key] = ()) -> Markup:
-    """The chart as SVG.
+def pareto_chart(picture: RunPicture, background: Plot, marks: Sequence[Mark], keys: Sequence[Key] = ()) -> Plot:
+    """The whole chart.
 
     Args:
         picture: the run.
@@ -260,7 +259,11 @@ def pareto_chart(picture: RunPicture, background: Plot, marks: Sequence[Mark], k
         begun = picture.status in ACTIVE
         words = "The first designs are being evaluated:" if begun else "No designs yet.\nPress Start:"
         plot.message(f"{words} each generation's front appears here.", numbers=True)
-    return plot.svg("pareto", 'data-drag="pan" data-hover="1" data-click="1" data-box="1" tabindex="0"')
+    return plot
+
+
+PARETO_GESTURES = 'data-drag="pan" data-hover="1" data-click="1" data-box="1" tabindex="0"'
+"""What the chart's element says of the gestures that it answers."""
 
 
 def pick(

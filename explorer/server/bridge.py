@@ -158,6 +158,18 @@ def scrolling(name: str, content: Markup) -> Markup:
     )
 
 
+def picture_file(name: str, drawing: Markup, scale: float, serial: int) -> Markup:
+    """An SVG drawing that the browser saves as a PNG of ``scale`` pixels for one of its own; once a ``serial``."""
+    return fill(
+        '<template data-file="{}" data-scale="{:g}" data-serial="{}">{}</template>'
+        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.picture(this)">',
+        name,
+        scale,
+        serial,
+        drawing,
+    )
+
+
 def tooltip(chart: str, content: Markup, serial: int) -> Markup:
     """HTML that the browser shows beside the pointer while it rests on ``chart``."""
     return fill(

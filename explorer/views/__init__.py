@@ -5,8 +5,8 @@ set up), ``library_view`` (the folder of runs). One browser's own: ``pareto`` (t
 ``charts_view`` with ``chart_tabs``, ``table_view``, ``compare_view``, ``whatif_view``, ``ship_view`` with
 ``ship_picture`` and ``ship_words`` (the tabs), ``scene_view`` (the ship in 3D), ``overlay_view`` (waves and pressures
 on it), ``toolbar_view`` (buttons over it). Gestures without a picture of their own: ``run_control``,
-``parallel_view``. Shared helpers: ``on_display`` (what is selected and overlaid), ``tables``, ``headline`` and
-``chips`` (HTML of numbers, of what an owner asks first, and of buttons).
+``parallel_view``. Shared helpers: ``on_display`` (what is selected and overlaid), ``saving`` (charts as files),
+``tables``, ``headline`` and ``chips`` (HTML of numbers, of what an owner asks first, and of buttons).
 
 A view gets the state (a ``Session``, or the ``AppState``) and of the services what it needs; it draws when the hub
 calls it and changes the state by the state's own methods (explorer/state/__init__.py).

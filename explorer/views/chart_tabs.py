@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 from explorer.charts.drivers import drivers_table
 from explorer.charts.parallel import parallel_chart
 from explorer.services.designs import Designs
@@ -9,15 +11,20 @@ from explorer.state.session import Session
 from explorer.views.charts_view import ChartTab
 from explorer.views.chips import soft
 from explorer.views.on_display import overlaid
+from explorer.views.saving import Figure
 from hpsop_core.charts.engine import engine_chart
 from hpsop_core.charts.hulls import body_plan_chart, sectional_area_chart
 from hpsop_core.charts.looks import Look, Sheet
+from hpsop_core.charts.powering import power_chart
 from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thrust_chart
 from hpsop_core.charts.search import best_chart, convergence_chart
 from hpsop_core.evaluation.curves import DesignCurves, HullLines
+from hpsop_core.evaluation.power_curves import power_curves
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.ship import engine_of
 from hpsop_core.markup import Markup, fill, joined
+
+Drawing = Sequence[Figure | Markup]
 
 
 def _sheet(session: Session, share: float, least: float = 215.0, most: float = 330.0) -> Sheet:
@@ -25,9 +32,9 @@ def _sheet(session: Session, share: float, least: float = 215.0, most: float = 3
     return Sheet(session.chart_width, min(max(share * session.size[1], least), most))
 
 
-def _open_water(session: Session, designs: Designs) -> Markup:
+def _open_water(session: Session, designs: Designs) -> Drawing:
     curves = [(look, shown.evaluation) for look, shown in overlaid(session, designs)]
-    return open_water_chart(curves, _sheet(session, 0.30)).svg("open_water")
+    return [Figure("open_water", open_water_chart(curves, _sheet(session, 0.30)))]
 
 
 def _with_curves(session: Session, designs: Designs) -> list[tuple[Look, Evaluation, DesignCurves]]:
@@ -55,7 +62,7 @@ def _compute_curves(session: Session, designs: Designs) -> None:
             return
 
 
-def _resistance(session: Session, designs: Designs) -> Markup:
+def _resistance(session: Session, designs: Designs) -> Drawing:
     curves = _with_curves(session, designs)
     sheet = _sheet(session, 0.24, 190.0, 260.0)
     level = session.selected.evaluation.level if session.selected else 1
@@ -63,28 +70,39 @@ def _resistance(session: Session, designs: Designs) -> Markup:
     waiting = "" if complete else " The other designs' curves are being computed …"
     points = [(look, found.points, evaluation) for look, evaluation, found in curves]
     knots = session.picture.case.conditions.speeds_are_fixed
-    return fill(
-        '{}{}<p class="soft">Level {}, {}; marks are the conditions.{}</p>',
-        resistance_chart(points, "total", sheet, knots=knots).svg("resistance_total"),
-        resistance_chart(points, "wave", sheet, knots=knots).svg("resistance_wave"),
-        level,
-        "all at the same speeds" if knots else "each at its own Froude number",
-        waiting,
-    )
+    speeds = "all at the same speeds" if knots else "each at its own Froude number"
+    return [
+        Figure("resistance_total", resistance_chart(points, "total", sheet, knots=knots)),
+        Figure("resistance_wave", resistance_chart(points, "wave", sheet, knots=knots)),
+        soft(f"Level {level}, {speeds}; marks are the conditions.{waiting}"),
+    ]
 
 
-def _thrust(session: Session, designs: Designs) -> Markup:
+def _thrust(session: Session, designs: Designs) -> Drawing:
     curves = [(look, found.thrust, evaluation) for look, evaluation, found in _with_curves(session, designs)]
     knots = session.picture.case.conditions.speeds_are_fixed
-    return thrust_chart(curves, _sheet(session, 0.30), knots=knots).svg("thrust")
+    return [Figure("thrust", thrust_chart(curves, _sheet(session, 0.30), knots=knots))]
 
 
-def _engine(session: Session, designs: Designs) -> Markup:
-    engine = engine_of(session.picture.case.engine)
+def _engine(session: Session, designs: Designs) -> Drawing:
+    case = session.picture.case
+    engine = engine_of(case.engine)
     shown = [(look, item.evaluation) for look, item in overlaid(session, designs)]
-    words = "The case states no engine: set its MCR under Loading and engine." if engine is None else ""
-    chart = engine_chart(engine, shown, _sheet(session, 0.30)).svg("engine")
-    return fill("{}{}", chart, soft(words) if words else "")
+    powers = [
+        (look, power_curves(case, evaluation, found.points), evaluation)
+        for look, evaluation, found in _with_curves(session, designs)
+    ]
+    margin = case.constants.sea_margin
+    words = "" if engine is not None else " The case states no engine: set its MCR under Loading and engine."
+    return [
+        Figure("power", power_chart(engine, powers, margin, _sheet(session, 0.30))),
+        Figure("engine", engine_chart(engine, shown, _sheet(session, 0.30), [(a, b) for a, b, _ in powers])),
+        soft(f"Brake power: delivered power over the shaft's efficiency, {_margin_words(margin)}.{words}"),
+    ]
+
+
+def _margin_words(margin: float) -> str:
+    return f"with the case's sea margin of {100.0 * margin:.3g} %" if margin else "in calm water (no sea margin stated)"
 
 
 def _with_lines(session: Session, designs: Designs) -> list[tuple[Look, HullLines]]:
@@ -95,23 +113,25 @@ def _with_lines(session: Session, designs: Designs) -> list[tuple[Look, HullLine
     ]
 
 
-def _lines(session: Session, designs: Designs) -> Markup:
+def _lines(session: Session, designs: Designs) -> Drawing:
     lines = _with_lines(session, designs)
-    plan = body_plan_chart(lines, _sheet(session, 0.31, 220.0, 330.0)).svg("body_plan")
-    return plan + sectional_area_chart(lines, _sheet(session, 0.24, 180.0, 240.0)).svg("sectional_area")
+    return [
+        Figure("body_plan", body_plan_chart(lines, _sheet(session, 0.31, 220.0, 330.0))),
+        Figure("sectional_area", sectional_area_chart(lines, _sheet(session, 0.24, 180.0, 240.0))),
+    ]
 
 
-def _parallel(session: Session, _designs: Designs) -> Markup:
+def _parallel(session: Session, _designs: Designs) -> Drawing:
     selected = session.selected.design_id if session.selected else None
     sheet = _sheet(session, 0.36, 240.0, 360.0)
-    return parallel_chart(session.picture, session.filters, selected, session.scrubbed, sheet.width, sheet.height)
+    return [parallel_chart(session.picture, session.filters, selected, session.scrubbed, sheet.width, sheet.height)]
 
 
-def _drivers(session: Session, _designs: Designs) -> Markup:
-    return drivers_table(session.picture)
+def _drivers(session: Session, _designs: Designs) -> Drawing:
+    return [drivers_table(session.picture)]
 
 
-def _convergence(session: Session, _designs: Designs) -> Markup:
+def _convergence(session: Session, _designs: Designs) -> Drawing:
     picture = session.picture
     numbers = [item.number for item in picture.generations]
     levels = [item.level for item in picture.generations]
@@ -121,19 +141,19 @@ def _convergence(session: Session, _designs: Designs) -> Markup:
         rows = picture.rows(item.front)
         best.append(tuple(picture.objectives[rows].min(axis=0)) if len(rows) else (float("nan"), float("nan")))
     sheet, total = _sheet(session, 0.26, 190.0, 270.0), picture.total_generations
-    return fill(
-        '{}{}<p class="soft">Hypervolume of the feasible front against (1.2, 1.2); each level has its own series.</p>',
-        convergence_chart(numbers, levels, values, total, sheet).svg("convergence"),
-        best_chart(numbers, levels, best, total, sheet).svg("best"),
-    )
+    return [
+        Figure("convergence", convergence_chart(numbers, levels, values, total, sheet)),
+        Figure("best", best_chart(numbers, levels, best, total, sheet)),
+        soft("Hypervolume of the feasible front against (1.2, 1.2); each level has its own series."),
+    ]
 
 
-def _failures(session: Session, designs: Designs) -> Markup:
+def _failures(session: Session, designs: Designs) -> Drawing:
     picture = session.picture
     ids = [int(value) for value in picture.ids[picture.failed]]
     if not ids:
         done = len(picture.ids)
-        return soft(f"No evaluation failed among {done}." if done else "Nothing evaluated yet.")
+        return [soft(f"No evaluation failed among {done}." if done else "Nothing evaluated yet.")]
     rows = [Markup("<tr><th>design</th><th>level</th><th>gen.</th><th>stage</th><th>reason</th></tr>")]
     for design_id in ids[-100:][::-1]:
         shown = designs.shown(design_id)
@@ -147,8 +167,8 @@ def _failures(session: Session, designs: Designs) -> Markup:
         variables = ", ".join(f"{key} {value:g}" for key, value in evaluation.variables.as_dict().items())
         cells = (design_id, evaluation.level, shown.generation, evaluation.stage, evaluation.reason)
         rows.append(fill(row, variables, *cells))
-    more = soft(f"the latest 100 of {len(ids)}") if len(ids) > 100 else ""
-    return fill('<table class="numbers">{}</table>{}', joined(rows), more)
+    more = [soft(f"the latest 100 of {len(ids)}")] if len(ids) > 100 else []
+    return [fill('<table class="numbers">{}</table>', joined(rows)), *more]
 
 
 _DESIGN = frozenset({"selection", "pins"})
@@ -156,7 +176,7 @@ _TABS = (
     ChartTab("open_water", "Open water", "design", _DESIGN, _open_water),
     ChartTab("resistance", "Resistance", "design", _DESIGN | {"curves"}, _resistance),
     ChartTab("thrust", "Thrust", "design", _DESIGN | {"curves"}, _thrust),
-    ChartTab("engine", "Engine", "design", _DESIGN, _engine),
+    ChartTab("engine", "Power, engine", "design", _DESIGN | {"curves"}, _engine),
     ChartTab("lines", "Lines", "design", _DESIGN, _lines),
     ChartTab("parallel", "Parallel coordinates", "run", frozenset({"run", "filter", "selection", "scrub"}), _parallel),
     ChartTab("drivers", "Drivers", "run", frozenset({"run"}), _drivers),

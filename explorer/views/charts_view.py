@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
 from functools import partial
 
@@ -13,6 +13,7 @@ from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.views.chips import box, chip, chips, soft
+from explorer.views.saving import Figure, Saving, shown
 from hpsop_core.markup import Markup, fill, joined
 
 
@@ -25,23 +26,26 @@ class ChartTab:
         title: on its button.
         topics: what it is drawn from.
         of: "design" or "run": which row its button stands in.
-        render: the HTML; called on the session's worker.
+        render: charts and HTML in their order; called on the session's worker.
     """
 
     name: str
     title: str
     of: str
     topics: frozenset[str]
-    render: Callable[[Session, Designs], Markup]
+    render: Callable[[Session, Designs], Sequence[Figure | Markup]]
 
 
 class ChartsView:
     """A row of buttons and the chosen chart."""
 
-    def __init__(self, session: Session, designs: Designs, gui: viser.GuiApi, tabs: Mapping[str, ChartTab]) -> None:
+    def __init__(
+        self, session: Session, designs: Designs, gui: viser.GuiApi, tabs: Mapping[str, ChartTab], saving: Saving
+    ) -> None:
         self._session = session
         self._designs = designs
         self._tabs = tabs
+        self._saving = saving
         self._bar = Slot(gui)
         self._html = Slot(gui)
         session.gestures.on("act", "tab", self._choose)
@@ -64,8 +68,9 @@ class ChartsView:
         self._draw_chart(chosen)
 
     def _draw_chart(self, chosen: ChartTab) -> None:
-        content = chosen.render(self._session, self._designs)
-        self._html.show(box(fill('<div data-chart-tab="{}">{}</div>', chosen.name, content)))
+        parts = chosen.render(self._session, self._designs)
+        save = self._saving.offer([part for part in parts if isinstance(part, Figure)])
+        self._html.show(box(fill('<div data-chart-tab="{}">{}</div>', chosen.name, shown(parts)), save))
 
     def _topic(self, topic: str) -> None:
         chosen = self._chosen()

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable
 from typing import Any
 
 import viser
@@ -26,11 +25,11 @@ from explorer.state.session import Session
 from explorer.state.table_options import WHICH
 from explorer.views.chips import GAP, NOTHING, box, chip, chips, soft
 from explorer.views.on_display import select_design
+from explorer.views.saving import Download
 from hpsop_core.errors import InputError
 from hpsop_core.markup import Markup, fill, joined, symbol_html
 from hpsop_core.quantities import number_text
 
-Download = Callable[[str, bytes], None]
 _HINTS = {
     "feasible": "designs that keep every constraint",
     "front": "the newest generation's front",

@@ -10,19 +10,27 @@ from hpsop_core.case.case import KNOT
 from hpsop_core.charts.axis import Axis
 from hpsop_core.charts.looks import Look, Sheet
 from hpsop_core.charts.plot import Plot
+from hpsop_core.evaluation.power_curves import PowerCurves
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.machinery.engine import GREATEST_RATE, Engine
 
 _LEAST_RATE = 0.35
 
 
-def engine_chart(engine: Engine | None, designs: Sequence[tuple[Look, Evaluation]], sheet: Sheet) -> Plot:
+def engine_chart(
+    engine: Engine | None,
+    designs: Sequence[tuple[Look, Evaluation]],
+    sheet: Sheet,
+    demands: Sequence[tuple[Look, PowerCurves]] = (),
+) -> Plot:
     """Brake power in MW over the shaft's rate in rpm, each condition of each design a point.
 
     Args:
         engine: its layout is drawn; None draws the designs alone.
         designs: what is compared; the last is the main one, whose conditions are named.
         sheet: size and style.
+        demands: power over speed of the same designs, where it is known: drawn as the propeller's demand in service
+            (calm water's for the main design too) instead of straight lines between the conditions.
     """
     shown = [(look, item) for look, item in designs if item.ok]
     rates = [c.rotation_rate_rpm for _, item in shown for c in item.conditions]
@@ -39,11 +47,19 @@ def engine_chart(engine: Engine | None, designs: Sequence[tuple[Look, Evaluation
         plot.message("no operating points for this design")
     if engine is not None:
         _layout(plot, engine, left, right)
+    curved = {look.name for look, _ in demands}
+    for index, (look, curves) in enumerate(demands):
+        rate = curves.rotation_rate_rpm
+        plot.line(rate, 1e-6 * curves.service, look.css, name=f"{look.name}, service", key=look.name, curved=True)
+        if index == len(demands) - 1:
+            words = f"{look.name}, calm water"
+            plot.line(rate, 1e-6 * curves.calm, f"{look.role} dot thin", name=words, key=words, curved=True)
     for index, (look, item) in enumerate(shown):
         n = np.array([c.rotation_rate_rpm for c in item.conditions])
         power = np.array([1e-6 * (c.brake_power or c.delivered_power) for c in item.conditions])
         order = np.argsort(n)
-        plot.line(n[order], power[order], look.css, name=look.name, key=look.name)
+        if look.name not in curved:
+            plot.line(n[order], power[order], look.css, name=look.name, key=look.name)
         for condition, at, value in zip(item.conditions, n, power, strict=True):
             speed = f"{condition.speed / KNOT:.4g} kn"
             outside = condition.engine_excess is not None and condition.engine_excess > 0.0

@@ -386,3 +386,21 @@ def test_the_table_sorts_selects_filters_and_saves(page, session):
     wait_until(lambda: not set(session.filters) & {"f1"}, 20, "the condition to go")
     session.clear_filters()
     choose_tab(page, "Design")
+
+
+def test_charts_are_saved_as_drawing_picture_and_numbers(page, session):
+    choose_tab(page, "Charts")
+    press(page, "tab", "open_water")
+    page.locator("svg[data-chart=open_water]").wait_for()
+    for chart in ("pareto", "open_water"):
+        for kind, start in (("svg", b"<?xml"), ("png", b"\x89PNG"), ("csv", b"")):
+            with page.expect_download() as caught:
+                press(page, "chart_save", f"{chart} {kind}")
+            with open(caught.value.path(), "rb") as file:
+                data = file.read()
+            assert caught.value.suggested_filename.endswith(f"{chart.replace('_', '-')}.{kind}")
+            assert data.startswith(start) and len(data) > 200, (chart, kind)
+            if kind == "png":
+                image = Image.open(caught.value.path())
+                assert image.width >= 3 * 0.9 * session.chart_width and len(image.convert("L").getcolors()) > 20
+    choose_tab(page, "Design")

@@ -6,11 +6,14 @@ from collections.abc import Mapping
 
 import viser
 
+from explorer.charts.designs_table import designs_csv
 from explorer.charts.pareto import (
+    PARETO_GESTURES,
     Beyond,
     ParetoOptions,
     automatic_limits,
     beyond_fronts,
+    drawn_designs,
     newest_families,
     pareto_background,
     pareto_chart,
@@ -18,7 +21,9 @@ from explorer.charts.pareto import (
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Limits, Session
+from explorer.state.table_options import TableOptions
 from explorer.views.chips import NOTHING, box, soft
+from explorer.views.saving import Figure, Saving
 from hpsop_core.charts.frame import Key
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.search import Mark
@@ -34,9 +39,10 @@ class ParetoChart:
         limits: that the chart has, or will have as soon as it is drawn again.
     """
 
-    def __init__(self, session: Session, designs: Designs, gui: viser.GuiApi) -> None:
+    def __init__(self, session: Session, designs: Designs, gui: viser.GuiApi, saving: Saving) -> None:
         self._session = session
         self._designs = designs
+        self._saving = saving
         self._background: tuple[tuple[object, ...], Plot] | None = None
         self._html = Slot(gui)
         # apart from the chart, which is drawn at every selection: what was opened stays open
@@ -96,7 +102,14 @@ class ParetoChart:
             words += soft(
                 f"×n: n designs that the error of their numbers cannot tell apart; {max(names)} such families."
             )
-        self._html.show(box(pareto_chart(picture, self._background[1], self._marks(), keys), words))
+        plot = pareto_chart(picture, self._background[1], self._marks(), keys)
+        stars = session.stars
+
+        def numbers() -> str:
+            return designs_csv(picture, TableOptions(columns=("f1", "f2")), drawn_designs(picture, options).rows, stars)
+
+        save = self._saving.offer([Figure("pareto", plot, numbers)]) if len(picture.ids) else NOTHING
+        self._html.show(box(plot.svg("pareto", PARETO_GESTURES), words, save))
 
     def _say_beyond(self, beyond: Beyond) -> None:
         if not beyond.count:

@@ -1,0 +1,104 @@
+"""Charts as files: what is drawn can be saved as SVG, PNG and CSV."""
+
+from __future__ import annotations
+
+from collections.abc import Callable, Sequence
+from dataclasses import dataclass
+
+import viser
+
+from explorer.server.bridge import PageEvent, picture_file
+from explorer.server.html_slot import Slot
+from explorer.state.session import Session
+from explorer.views.chips import GAP, NOTHING, chip, chips, soft
+from hpsop_core.charts.plot import Plot
+from hpsop_core.markup import Markup, joined
+
+Download = Callable[[str, bytes], None]
+_KINDS = (
+    ("svg", "SVG", "the chart as a drawing, on white, for paper"),
+    ("png", "PNG", "the chart as a picture of three pixels for one"),
+    ("csv", "CSV", "the numbers that the chart is drawn from"),
+)
+_SCALE = 3.0
+
+
+@dataclass(frozen=True, eq=False)
+class Figure:
+    """A chart that can be saved.
+
+    Attributes:
+        name: one word.
+        plot: what is drawn.
+        numbers: its CSV where the plot itself holds no named series.
+    """
+
+    name: str
+    plot: Plot
+    numbers: Callable[[], str] | None = None
+
+    def svg(self) -> Markup:
+        """As it stands on the page."""
+        return self.plot.svg(self.name)
+
+
+class Saving:
+    """Gives out what charts show, as they were drawn last.
+
+    Args:
+        session: whose charts.
+        gui: a container that is always mounted: a PNG is made by the browser from what comes through it.
+        download: gives the browser a file by name.
+    """
+
+    def __init__(self, session: Session, gui: viser.GuiApi, download: Download) -> None:
+        self._session = session
+        self._download = download
+        self._figures: dict[str, Figure] = {}
+        self._slot = Slot(gui)
+        self._serial = 0
+        session.gestures.on("act", "chart_save", self._save)
+
+    def offer(self, figures: Sequence[Figure], before: Markup = NOTHING) -> Markup:
+        """Buttons that save these charts; none while there is nothing in them.
+
+        Args:
+            figures: as drawn now.
+            before: what stands at the left in the same row.
+        """
+        self._figures.update({item.name: item for item in figures})
+        drawn = [item for item in figures if item.plot.series or item.numbers is not None]
+        named = len(drawn) > 1
+        parts = [before, GAP] if drawn or before else []
+        for item in drawn:
+            parts.append(soft(f"save {_words(item.name)}" if named else "save", "span"))
+            parts += [chip("chart_save", word, f"{item.name} {kind}", hint=hint) for kind, word, hint in _KINDS]
+        return chips(*parts) if parts else NOTHING
+
+    def _save(self, event: PageEvent) -> None:
+        name, _, kind = event.arg.partition(" ")
+        figure = self._figures.get(name)
+        if figure is None:
+            return
+        plot = figure.plot
+        run, selected = self._session.picture.name.removesuffix(".hpsop"), self._session.selected
+        design = "" if selected is None or selected.design_id is None else str(selected.design_id)
+        file = "-".join(part for part in (run or "hpsop", design, name.replace("_", "-")) if part)
+        if kind == "svg":
+            self._download(f"{file}.svg", plot.file_svg(name).encode("utf-8"))
+        elif kind == "csv":
+            text = plot.csv() if figure.numbers is None else figure.numbers()
+            self._download(f"{file}.csv", text.encode("utf-8"))
+        elif kind == "png":
+            self._serial += 1
+            _, drawing = plot.file_svg(name).split("\n", 1)
+            self._slot.show(picture_file(f"{file}.png", Markup(drawing), _SCALE, self._serial))
+
+
+def _words(name: str) -> str:
+    return name.replace("_", " ")
+
+
+def shown(parts: Sequence[Figure | Markup]) -> Markup:
+    """Charts and words in their order, as they stand on the page."""
+    return joined(part.svg() if isinstance(part, Figure) else part for part in parts)
