@@ -10,7 +10,7 @@ import viser
 from explorer.server.bridge import PageEvent, picture_file
 from explorer.server.html_slot import Slot
 from explorer.state.session import Session
-from explorer.views.chips import GAP, NOTHING, chip, chips, soft
+from explorer.views.chips import GAP, chip, chips, soft
 from hpsop_core.charts.plot import Plot
 from hpsop_core.markup import Markup, joined
 
@@ -59,21 +59,17 @@ class Saving:
         self._serial = 0
         session.gestures.on("act", "chart_save", self._save)
 
-    def offer(self, figures: Sequence[Figure], before: Markup = NOTHING) -> Markup:
-        """Buttons that save these charts; none while there is nothing in them.
-
-        Args:
-            figures: as drawn now.
-            before: what stands at the left in the same row.
-        """
+    def keep(self, figures: Sequence[Figure]) -> None:
+        """From now on a press on these charts' buttons saves them as they are here."""
         self._figures.update({item.name: item for item in figures})
+
+    def offer(self, figures: Sequence[Figure]) -> Markup:
+        """Keep these charts; a row of buttons that save them, none for one that holds nothing yet."""
+        self.keep(figures)
         drawn = [item for item in figures if item.plot.series or item.numbers is not None]
         named = len(drawn) > 1
-        parts = [before, GAP] if drawn or before else []
-        for item in drawn:
-            parts.append(soft(f"save {_words(item.name)}" if named else "save", "span"))
-            parts += [chip("chart_save", word, f"{item.name} {kind}", hint=hint) for kind, word, hint in _KINDS]
-        return chips(*parts) if parts else NOTHING
+        rows = [chips(GAP, *buttons(item.name, f"save {_words(item.name)}" if named else "save")) for item in drawn]
+        return joined(rows)
 
     def _save(self, event: PageEvent) -> None:
         name, _, kind = event.arg.partition(" ")
@@ -93,6 +89,14 @@ class Saving:
             self._serial += 1
             _, drawing = plot.file_svg(name).split("\n", 1)
             self._slot.show(picture_file(f"{file}.png", Markup(drawing), _SCALE, self._serial))
+
+
+def buttons(name: str, word: str = "save") -> list[Markup]:
+    """A word, and the buttons that save the chart of that name."""
+    return [
+        soft(word, "span"),
+        *(chip("chart_save", title, f"{name} {kind}", hint=hint) for kind, title, hint in _KINDS),
+    ]
 
 
 def _words(name: str) -> str:

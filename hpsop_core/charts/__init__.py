@@ -10,7 +10,7 @@ Lowest first; each room uses those above it:
 * ``frame``: what ``Plot`` puts round its area: grid, axes, titles, legend.
 * ``looks``: how a design and how published points appear in every chart.
 * ``propulsion``: open water, resistance, thrust.
-* ``engine``: the engine diagram.
+* ``engine``: the engine diagram; ``powering``: power against speed.
 * ``hulls``: body plan, sectional areas.
 * ``search``: Pareto chart, convergence, evolution of fronts.
 * ``own_files``: what was understood of a hull or propeller file, on one ``sheet``; ``raster`` makes a PNG of that.

@@ -108,8 +108,8 @@ class ParetoChart:
         def numbers() -> str:
             return designs_csv(picture, TableOptions(columns=("f1", "f2")), drawn_designs(picture, options).rows, stars)
 
-        save = self._saving.offer([Figure("pareto", plot, numbers)]) if len(picture.ids) else NOTHING
-        self._html.show(box(plot.svg("pareto", PARETO_GESTURES), words, save))
+        self._saving.keep([Figure("pareto", plot, numbers)])
+        self._html.show(box(plot.svg("pareto", PARETO_GESTURES), words))
 
     def _say_beyond(self, beyond: Beyond) -> None:
         if not beyond.count:

@@ -13,6 +13,7 @@ from explorer.server.widgets import set_value
 from explorer.state.run_picture import GenerationPicture
 from explorer.state.session import Session
 from explorer.views.chips import GAP, NOTHING, box, chip, chips, soft
+from explorer.views.saving import buttons
 
 _STEP_SECONDS = 0.25
 
@@ -69,7 +70,8 @@ class Scrubber:
                 )
             )
         )
-        self._words.show(box(chips(soft(_generation_words(generation, count), "span"), GAP, filtered)))
+        save = buttons("pareto") if count else []
+        self._words.show(box(chips(soft(_generation_words(generation, count), "span"), GAP, filtered, *save)))
         if not count:
             # of another run, which had some
             set_value(self._slider, 0)

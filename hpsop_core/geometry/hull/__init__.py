@@ -2,7 +2,8 @@
 
 A file for a thought: ``hull`` (parent hulls and the hulls of their family), ``form`` (the longitudinal shift that
 changes volume and centre of buoyancy), ``hydrostatics``, ``offset_table`` (half-breadths for thin-ship theory),
-``panels`` (quadrilaterals for the panel method), ``mesh`` (watertight triangles).
+``panels`` (quadrilaterals for the panel method), ``mesh`` (watertight triangles), ``lines`` (stations, waterlines,
+buttocks and profile of a lines plan).
 
 Fitting: ``fit`` (least squares of one patch), ``fit_plan`` (a hull's patches declared, and the loop that fits them),
 ``table_stations``, ``table_ends`` and ``table_knuckles`` (what a table of half-breadths says), ``table_plans`` (the
