@@ -13,6 +13,8 @@ from hpsop_core.evaluation.curves import DesignCurves, HullLines, hull_lines, re
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.shapes import design_hull
+from hpsop_core.geometry.hull.lines import HullLine, plan_lines
 
 # Charts end soon after the fastest condition. Level 1 follows every hump of the wave resistance; one speed of level 2
 # costs more than all of these.
@@ -28,6 +30,7 @@ class Answers:
         self._evaluations: Remembered[Evaluation] = Remembered(400)
         self._curves: Remembered[DesignCurves] = Remembered(60)
         self._lines: Remembered[HullLines] = Remembered(60)
+        self._plans: Remembered[tuple[HullLine, ...]] = Remembered(24)
 
     def reference(self, case: Case, level: int) -> Reference:
         """The initial design's numbers at a level (at level 2, or with calibration by it, this takes a second)."""
@@ -67,3 +70,16 @@ class Answers:
             SolverFailure: the form cannot be made.
         """
         return self._lines.get((case, variables.key()), lambda: hull_lines(case, variables))
+
+    def plan(self, case: Case, variables: DesignVariables) -> tuple[HullLine, ...]:
+        """Lines of the lines plan.
+
+        Raises:
+            SolverFailure: the form cannot be made.
+        """
+        key = (case, variables.key())
+        return self._plans.get(key, lambda: tuple(plan_lines(design_hull(case, variables), "view")))
+
+    def known_plan(self, case: Case, variables: DesignVariables) -> tuple[HullLine, ...] | None:
+        """The same if it has been cut already."""
+        return self._plans.peek((case, variables.key()))

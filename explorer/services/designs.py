@@ -20,6 +20,7 @@ from hpsop_core.evaluation.curves import DesignCurves, HullLines
 from hpsop_core.evaluation.fields import WaveField, blade_pressure, hull_pressure, waves
 from hpsop_core.evaluation.reference import Reference
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.geometry.hull.lines import HullLine
 
 
 class DesignSource(Protocol):
@@ -122,6 +123,14 @@ class Designs:
     def lines(self, variables: DesignVariables) -> HullLines:
         """Sections and areas."""
         return self._answers.lines(self.case, variables)
+
+    def plan(self, variables: DesignVariables) -> tuple[HullLine, ...]:
+        """Lines of the lines plan."""
+        return self._answers.plan(self.case, variables)
+
+    def known_plan(self, variables: DesignVariables) -> tuple[HullLine, ...] | None:
+        """The same where they have been cut."""
+        return self._answers.known_plan(self.case, variables)
 
     # ---- the 3D view -----------------------------------------------------------------------------------------------
     def geometry(self, variables: DesignVariables) -> SceneGeometry:

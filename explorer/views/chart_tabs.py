@@ -14,6 +14,7 @@ from explorer.views.on_display import overlaid
 from explorer.views.saving import Figure
 from hpsop_core.charts.engine import engine_chart
 from hpsop_core.charts.hulls import body_plan_chart, sectional_area_chart
+from hpsop_core.charts.lines_plan import lines_csv, lines_plan_chart
 from hpsop_core.charts.looks import Look, Sheet
 from hpsop_core.charts.powering import power_chart
 from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thrust_chart
@@ -25,6 +26,8 @@ from hpsop_core.evaluation.ship import engine_of
 from hpsop_core.markup import Markup, fill, joined
 
 Drawing = Sequence[Figure | Markup]
+# px, of the lines plan's whole sheet
+_PLAN_WIDTH = 2000.0
 
 
 def _sheet(session: Session, share: float, least: float = 215.0, most: float = 330.0) -> Sheet:
@@ -121,6 +124,31 @@ def _lines(session: Session, designs: Designs) -> Drawing:
     ]
 
 
+def _lines_plan(session: Session, designs: Designs) -> Drawing:
+    shown = session.selected
+    if shown is None or not shown.evaluation.ok:
+        return [soft("A design that failed has no lines.")]
+    variables, hull = shown.evaluation.variables, shown.evaluation.hull
+    lines = designs.known_plan(variables)
+    if lines is None:
+        session.slow.latest("plan", lambda: _cut_plan(session, designs))
+        return [soft(f"Cutting the lines of {shown.label} …")]
+    # at the width of the panel a ship's depth would be a finger's: the drawing scrolls along the ship
+    plot = lines_plan_chart(lines, hull.length, hull.breadth, hull.draft, max(_PLAN_WIDTH, session.chart_width))
+    words = (
+        f"{shown.label}: stations of ten from AP, waterlines by their height and buttocks by their distance from the "
+        "centreplane in m. Scroll along the ship; SVG saves the whole sheet."
+    )
+    return [Figure("lines_plan", plot, lambda: lines_csv(lines, hull.length), wide=True), soft(words)]
+
+
+def _cut_plan(session: Session, designs: Designs) -> None:
+    shown = session.selected
+    if shown is not None and shown.evaluation.ok:
+        designs.plan(shown.evaluation.variables)
+        session.curves_ready()
+
+
 def _parallel(session: Session, _designs: Designs) -> Drawing:
     selected = session.selected.design_id if session.selected else None
     sheet = _sheet(session, 0.36, 240.0, 360.0)
@@ -178,6 +206,7 @@ _TABS = (
     ChartTab("thrust", "Thrust", "design", _DESIGN | {"curves"}, _thrust),
     ChartTab("engine", "Power, engine", "design", _DESIGN | {"curves"}, _engine),
     ChartTab("lines", "Lines", "design", _DESIGN, _lines),
+    ChartTab("lines_plan", "Lines plan", "design", frozenset({"selection", "curves"}), _lines_plan),
     ChartTab("parallel", "Parallel coordinates", "run", frozenset({"run", "filter", "selection", "scrub"}), _parallel),
     ChartTab("drivers", "Drivers", "run", frozenset({"run"}), _drivers),
     ChartTab("convergence", "Convergence", "run", frozenset({"run"}), _convergence),

@@ -7,12 +7,12 @@ from dataclasses import dataclass
 
 import viser
 
-from explorer.server.bridge import PageEvent, picture_file
+from explorer.server.bridge import PageEvent, picture_file, scrolling
 from explorer.server.html_slot import Slot
 from explorer.state.session import Session
 from explorer.views.chips import GAP, chip, chips, soft
 from hpsop_core.charts.plot import Plot
-from hpsop_core.markup import Markup, joined
+from hpsop_core.markup import Markup, fill, joined
 
 Download = Callable[[str, bytes], None]
 _KINDS = (
@@ -30,16 +30,21 @@ class Figure:
     Attributes:
         name: one word.
         plot: what is drawn.
-        numbers: its CSV where the plot itself holds no named series.
+        numbers: its CSV where the plot's own series are not it.
+        wide: whether it stands at its own width in a box that scrolls, instead of at the panel's.
     """
 
     name: str
     plot: Plot
     numbers: Callable[[], str] | None = None
+    wide: bool = False
 
     def svg(self) -> Markup:
         """As it stands on the page."""
-        return self.plot.svg(self.name)
+        if not self.wide:
+            return self.plot.svg(self.name)
+        sheet = fill('<div style="width:{:g}px">{}</div>', self.plot.area.picture_width, self.plot.svg(self.name))
+        return scrolling(self.name, sheet)
 
 
 class Saving:

@@ -11,7 +11,7 @@ Lowest first; each room uses those above it:
 * ``looks``: how a design and how published points appear in every chart.
 * ``propulsion``: open water, resistance, thrust.
 * ``engine``: the engine diagram; ``powering``: power against speed.
-* ``hulls``: body plan, sectional areas.
+* ``hulls``: body plan, sectional areas; ``lines_plan``: body, sheer and half-breadth plan at one scale.
 * ``search``: Pareto chart, convergence, evolution of fronts.
 * ``own_files``: what was understood of a hull or propeller file, on one ``sheet``; ``raster`` makes a PNG of that.
 * ``correlations``: Spearman's rank correlation as a table.

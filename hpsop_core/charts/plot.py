@@ -290,6 +290,10 @@ class Plot:
         self._numbers = numbers
         self._over.append(frame.message(self.area, text))
 
+    def without_numbers(self) -> None:
+        """Axes without ticks: a drawing whose places say themselves what they are."""
+        self._numbers = False
+
     # ---- out ---------------------------------------------------------------------------------------------------------
     def svg(self, name: str, attributes: str = "") -> Markup:
         """The chart as an element of a page that has the ``style_sheet``.

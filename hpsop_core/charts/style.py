@@ -140,6 +140,7 @@ def style_sheet(style: Style) -> str:
         (" .dashdot", "stroke-dasharray:7 3 1.5 3"),
         (" .dotdash", "stroke-dasharray:1.5 2 1.5 5"),
         (" .thin", "stroke-width:1"),
+        (" .hair", "stroke-width:.6;opacity:.55"),
         (" .guide", f"stroke:{colour['soft']};stroke-width:.8;stroke-dasharray:3 3;fill:none"),
         (" .brush", f"fill:{colour['brush']};opacity:.25"),
         (" .boxed", f"fill:none;stroke:{colour['ink']};stroke-dasharray:3 2"),
