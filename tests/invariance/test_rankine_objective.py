@@ -49,7 +49,7 @@ def cubic_residual(at: np.ndarray, values: np.ndarray) -> float:
 @pytest.mark.parametrize(("name", "low", "high"), [("length_to_breadth", 6.5, 8.5), ("breadth_to_draft", 3.0, 4.5)])
 def test_smooth_over_the_ratios(name: str, low: float, high: float) -> None:
     # Over this range the resistance changes by tens of per cent: 0.2 % of noise turns no comparison of two designs
-    # that differ enough to matter. 21 points here, 41 in `hpsop validate`.
+    # that differ enough to matter. `hpsop validate` does the same.
     at = np.linspace(low, high, 21)
     ratios = {"length_to_breadth": 355.0 / 51.0, "breadth_to_draft": 51.0 / 14.5}
     values = np.array([wave_resistances(affine(**{**ratios, name: value})) for value in at])
@@ -82,7 +82,7 @@ def test_hump_hollow_and_wall_over_the_block_coefficient() -> None:
 
 
 def test_designs_whose_form_varies_too() -> None:
-    # Twenty here, a hundred in `hpsop validate`, with displacement and LCB varied beside L/B, B/d and d.
+    # Twenty here, forty in `hpsop validate`, with displacement and LCB varied beside L/B, B/d and d.
     sample = robustness(form_designs(20, seed=11))
     assert sample.solved + sample.refused == 20
     assert sample.unexplained == 0
