@@ -10,8 +10,8 @@ from hpsop_core import evaluate, load_case
 
 def main() -> None:
     case = load_case("dtc-p4119")
-    # A larger, slower propeller with four blades; every other variable as the initial design has it.
-    design = case.initial.variables.replaced({"diameter": 9.4, "blade_count": 4, "pitch_ratio": 1.05}, "my design")
+    # A larger propeller with four blades and less pitch; every other variable as the initial design has it.
+    design = case.initial.variables.replaced({"diameter": 9.6, "blade_count": 4, "pitch_ratio": 0.95}, "my design")
     for level in (1, 2):
         for name, variables in (("initial", case.initial.variables), ("mine", design)):
             result = evaluate(case, variables, level)

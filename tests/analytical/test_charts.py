@@ -25,6 +25,7 @@ from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.reference import reference_for
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import Markup
+from tests.two_speeds import TWO_SPEEDS
 
 Array = NDArray[np.float64]
 SVG = "{http://www.w3.org/2000/svg}"
@@ -39,7 +40,7 @@ def unit_plot(**more) -> Plot:
 @pytest.fixture(scope="module")
 def initial() -> Evaluation:
     """The recommended case's initial design; stated wave coefficients, so that level 1 needs no level 2."""
-    case = load_case("dtc-p4119").replaced(
+    case = load_case(TWO_SPEEDS).replaced(
         "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
     )
     return evaluate(case, case.initial.variables, 1, reference_for(case, 1))

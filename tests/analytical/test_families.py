@@ -21,9 +21,10 @@ from hpsop_core.evaluation.ship import engine_of
 from hpsop_core.machinery.engine import Engine
 from hpsop_core.optimization.families import STATED_ERRORS, families, half_widths, narrow
 from hpsop_core.quantities import standing_on
+from tests.two_speeds import TWO_SPEEDS
 
 FRONT = np.array([[0.90, 1.00], [0.904, 0.998], [0.907, 0.996], [0.95, 0.95], [1.00, 0.90], [1.003, 0.897]])
-CASE = load_case("dtc-p4119")
+CASE = load_case(TWO_SPEEDS)
 
 
 def test_a_family_is_what_the_leader_cannot_be_told_from() -> None:

@@ -28,6 +28,7 @@ from hpsop_core.case.case import load_case
 from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.geometry.hull.input import Axes, ReadOptions, ShipTable, hull_from_table, read_hull, read_table
 from hpsop_core.hydro import michell
+from tests.two_speeds import TWO_SPEEDS
 
 Y = half_breadth(STATIONS, HEIGHTS)
 COMMA: Callable[[float], str] = lambda value: f"{value:.6g}".replace(".", ",")  # noqa: E731
@@ -325,7 +326,7 @@ def test_own_mesh_formats_come_back(tmp_path: Path) -> None:
     """What the program exports it reads again, with the propeller left out."""
     from hpsop_core.export.meshes import write_glb
 
-    case = load_case("dtc-p4119")
+    case = load_case(TWO_SPEEDS)
     hull = design_hull(case, case.initial.variables)
     write_glb(tmp_path / "ship.glb", hull, design_propeller(case, case.initial.variables))
     table = read_table(tmp_path / "ship.glb", ReadOptions(length=355.0, draft=14.5))
@@ -351,7 +352,7 @@ def test_own_surfaces_come_back(tmp_path: Path, suffix: str) -> None:
     from hpsop_core.export.solids import sewn_solid, write_iges, write_step
     from hpsop_core.export.surfaces import design_surfaces, hull_surfaces
 
-    case = load_case("dtc-p4119")
+    case = load_case(TWO_SPEEDS)
     hull = design_hull(case, case.initial.variables)
     path = tmp_path / f"ship.{suffix}"
     if suffix == "3dm":

@@ -13,6 +13,7 @@ from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.hydro.kelvin import KelvinWaves, WaveGrid, kelvin_waves
 from hpsop_core.hydro.michell import spectrum_resistance, wave_coefficients
 from hpsop_core.typing_aliases import Array
+from tests.two_speeds import TWO_SPEEDS
 
 FROUDE = (0.15, 0.18, 0.22, 0.27, 0.316, 0.4)
 # Columns and rows close together across the wake, a ship's length astern, where waves down to a hundredth of the
@@ -49,7 +50,7 @@ def wigley() -> Table:
 
 @pytest.fixture(scope="module")
 def container_ship() -> Table:
-    case = load_case("dtc-p4119")
+    case = load_case(TWO_SPEEDS)
     hull = design_hull(case, case.initial.variables)
     table = hull.offset_table()
     return Table(table.x, table.z, table.y, hull.length, hull.waterline())

@@ -18,6 +18,7 @@ from explorer.views.tables import design_card, many_table
 from hpsop_core.case.case import KNOT, Case, load_case
 from hpsop_core.evaluation.result import Evaluation, Failed
 from hpsop_core.quantities import change_text, number_text
+from tests.two_speeds import TWO_SPEEDS
 
 Array = NDArray[np.float64]
 
@@ -25,7 +26,7 @@ Array = NDArray[np.float64]
 @pytest.fixture(scope="module")
 def case() -> Case:
     """The recommended case with stated wave coefficients, so that level 1 needs no level 2."""
-    return load_case("dtc-p4119").replaced(
+    return load_case(TWO_SPEEDS).replaced(
         "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
     )
 

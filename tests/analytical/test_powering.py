@@ -17,10 +17,11 @@ from hpsop_core.evaluation.curves import froude_range, resistance_points, thrust
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Ok, evaluation_from_dict
 from hpsop_core.quantities import condition_names, condition_quantities
+from tests.two_speeds import TWO_SPEEDS
 
 PAPER = load_case("dtc-p4119-paper")
 # Nothing here depends on the waves' calibration, and level 2 is not asked.
-CASE = load_case("dtc-p4119").replaced("constants", wave_calibration="none")
+CASE = load_case(TWO_SPEEDS).replaced("constants", wave_calibration="none")
 PARTS = (
     "friction_resistance",
     "form_resistance",

@@ -16,10 +16,11 @@ from hpsop_core.evaluation.result import Ok
 from hpsop_core.hydro.cavitation import burrill_expanded_area_ratio, burrill_thrust_loading
 from hpsop_core.machinery.energy_efficiency import attained_eedi, auxiliary_power, speed_at_power
 from hpsop_core.machinery.engine import Engine
+from tests.two_speeds import TWO_SPEEDS
 
 KNOT = 1852.0 / 3600.0
 GRAMS_PER_KWH = 1.0 / 3.6e9
-CASE = load_case("dtc-p4119").changed(
+CASE = load_case(TWO_SPEEDS).changed(
     {
         "conditions": {"froude_numbers": [0.17, 0.20], "weights": [0.4, 0.6]},
         "engine": {
@@ -220,7 +221,7 @@ def test_an_engine_that_does_not_fit_together_is_refused(changes: dict[str, obje
 
 
 def test_an_objective_without_its_numbers_is_refused_in_one_line() -> None:
-    bare = load_case("dtc-p4119")
+    bare = load_case(TWO_SPEEDS)
     for name, field in (("fuel", "engine"), ("deadweight", "loading"), ("metacentric_height", "loading")):
         with pytest.raises(InputError, match=rf"^objectives: {name} needs \[{field}\]"):
             bare.replaced("objectives", first=name)

@@ -12,6 +12,7 @@ from hpsop_core.evaluation.hull_answer import solve_waves
 from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.hydro.friction import ittc57_coefficient
 from hpsop_core.report.words import trust
+from tests.two_speeds import TWO_SPEEDS
 
 FORM_FACTOR = 0.094
 
@@ -20,7 +21,7 @@ def test_the_resistance_is_as_near_to_the_tank_as_it_says() -> None:
     lines = [line for line in read_asset_text("reference", "dtc_resistance.csv").splitlines() if line[:1] != "#"]
     tests = list(csv.DictReader(lines))
     froude = [float(row["froude_number"]) for row in tests]
-    case = load_case("dtc-p4119")
+    case = load_case(TWO_SPEEDS)
     waves = solve_waves(design_hull(case, case.initial.variables), 2, froude)
     words = trust(case, 2)
     assert "within 2 %" in words and "0.174 to 0.218" in words

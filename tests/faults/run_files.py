@@ -15,6 +15,7 @@ from hpsop_core.case.case import Case, load_case
 from hpsop_core.runs.checksums import Tally, checksum
 from hpsop_core.runs.reader import open_run
 from hpsop_core.runs.schema import APPLICATION_ID, COLUMNS
+from tests.two_speeds import TWO_SPEEDS
 
 
 def small_case(**settings: object) -> Case:
@@ -25,7 +26,7 @@ def small_case(**settings: object) -> Case:
         "level1_generations": 4,
         "evaluation_time_limit": 60.0,
     }
-    return load_case("dtc-p4119").replaced("optimization", **{**defaults, **settings})
+    return load_case(TWO_SPEEDS).replaced("optimization", **{**defaults, **settings})
 
 
 def content(path: Path, ids: bool = True) -> dict[str, Any]:

@@ -30,7 +30,7 @@ BAD_CASES = {
     "missing file": (HULL, 'offsets = "nowhere.csv"\nlength = 3.0\ndraft = 0.2', ("hull", "offsets", "nowhere.csv")),
     "missing propeller file": (BLADE, 'geometry = "nowhere.csv"', ("propeller", "geometry", "nowhere.csv")),
     "missing mesh": (HULL, 'stl = "nowhere.stl"\nstl_unit = "m"\nlength = 3.0\ndraft = 0.2', ("nowhere.stl",)),
-    "mesh without a unit": (HULL, 'stl = "ship.stl"\nlength = 3.0\ndraft = 0.2', ("hull", "stl_unit")),
+    "mesh without a unit": (HULL, 'stl = "ship.stl"\nlength = 3.0\ndraft = 0.2', ("hull", "unit")),
     "mesh without a draft": (HULL, 'stl = "ship.stl"\nstl_unit = "m"\nlength = 3.0', ("hull", "draft")),
     "table and mesh": (HULL, 'stl = "ship.stl"\noffsets = "a.csv"', ("hull", "both", "keep one")),
     "unknown hull": (HULL, 'parent = "kcs"', ("kcs", "dtc")),

@@ -11,6 +11,7 @@ import pytest
 
 from hpsop_core.assets import read_asset_text
 from hpsop_core.cli.main import main
+from tests.two_speeds import TWO_SPEEDS
 
 HEAD = "r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c"
 
@@ -42,7 +43,7 @@ def test_shipped_propeller_as_a_case_and_as_a_table(
 ) -> None:
     table = tmp_path / "p4119.csv"
     table.write_text(read_asset_text("propellers", "p4119.csv"), encoding="utf-8")
-    of_case = answer(capsys, "dtc-p4119", "--advance", "0.5,0.7", "--level", level)
+    of_case = answer(capsys, TWO_SPEEDS, "--advance", "0.5,0.7", "--level", level)
     of_table = answer(capsys, "--geometry", str(table), "--blades", "3", "--advance", "0.5,0.7", "--level", level)
     for a, b in zip(of_case["points"], of_table["points"], strict=True):
         # the case scales the chords to an expanded area ratio of 0.607, the table has 0.6066
@@ -120,7 +121,7 @@ def test_bad_arguments(arguments: list[str], words: tuple[str, ...], capsys: pyt
         (blade(), None, ("--geometry", "--blades")),
         ("", "3", ("own.csv", "no rows")),
         (HEAD, "3", ("own.csv", "rows")),
-        (blade().replace("P_D", "pitch"), "3", ("own.csv", "P_D")),
+        (blade().replace("P_D", "colour"), "3", ("own.csv", "P_D")),
         (blade().replace("0.35,", "nan,"), "3", ("own.csv", "line 4", "finite")),
         (blade(pitch=100.0), "3", ("own.csv", "P_D", "percent")),
     ],

@@ -20,6 +20,7 @@ from explorer.server.security import address_of, free_port
 from explorer.server.token import door, token_of
 from hpsop_core.case.case import load_case
 from hpsop_core.errors import InputError
+from tests.two_speeds import TWO_SPEEDS
 
 PROXY = "https://hub.example.org"
 
@@ -27,7 +28,7 @@ PROXY = "https://hub.example.org"
 @pytest.fixture(scope="module")
 def explorer(tmp_path_factory: pytest.TempPathFactory) -> Any:
     # stated waves: the initial design then needs level 1 alone
-    case = load_case("dtc-p4119").replaced(
+    case = load_case(TWO_SPEEDS).replaced(
         "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
     )
     port = free_port("127.0.0.1", 8590)

@@ -23,6 +23,7 @@ from explorer.state.run_picture import RunPicture
 from explorer.state.session import Session
 from explorer.views.pareto.picking import _seen
 from hpsop_core.case.case import load_case
+from tests.two_speeds import TWO_SPEEDS
 
 CAMERA = {
     "type": "ViewerCameraMessage",
@@ -41,7 +42,7 @@ CAMERA = {
 @pytest.fixture(scope="module")
 def explorer(tmp_path_factory: pytest.TempPathFactory) -> Any:
     # stated waves: the initial design then needs level 1 alone
-    case = load_case("dtc-p4119").replaced(
+    case = load_case(TWO_SPEEDS).replaced(
         "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
     )
     page = Explorer(case, port=free_port("127.0.0.1", 8620), folder=tmp_path_factory.mktemp("runs"), workers=1)
@@ -177,7 +178,7 @@ def test_a_message_that_viser_stumbles_over_is_no_traceback(
 
 
 def test_a_picture_is_of_one_moment() -> None:
-    case = load_case("dtc-p4119")
+    case = load_case(TWO_SPEEDS)
     empty = RunPicture("a.hpsop", case, columns=("f1",), table=np.zeros((0, 1)))
     assert empty.column("f1") is not None
     for broken in (
@@ -194,7 +195,7 @@ def test_a_run_that_has_only_begun_is_drawn(tmp_path: Any) -> None:
     """Its file is there and holds no evaluation yet: every chart says so instead of stumbling."""
     from explorer.services.run_keeper import RunKeeper
 
-    case = load_case("dtc-p4119")
+    case = load_case(TWO_SPEEDS)
     keeper = RunKeeper(tmp_path / "new.hpsop", lambda: None, case, workers=1)
     try:
         assert keeper.path.is_file()

@@ -15,6 +15,7 @@ from hpsop_core.geometry.hull.hull import load_parent_hull
 from hpsop_core.geometry.hull.panels import HullPanels, grid_quads
 from hpsop_core.hydro.rankine.checks import check_panels
 from hpsop_core.hydro.rankine.solver import RankineSettings, solve, solve_panels, solver_axes
+from tests.two_speeds import TWO_SPEEDS
 
 COARSE = RankineSettings().refined(0.7)
 
@@ -118,7 +119,7 @@ def test_hollow_bottom_is_no_fold() -> None:
 
 def test_froude_number_of_a_design_outside_the_range_is_a_failed_evaluation() -> None:
     # At fixed speed a shorter design is faster: 0.5 sqrt(355/331) = 0.518.
-    case = load_case("dtc-p4119")
+    case = load_case(TWO_SPEEDS)
     case = replace(case, conditions=replace(case.conditions, froude_numbers=(0.22, 0.5)))
     design = replace(case.initial.variables, length_to_breadth=6.5)
     evaluation = evaluate(case, design, 2)

@@ -11,13 +11,14 @@ from hpsop_core import load_case
 from hpsop_core.cli.main import main
 from hpsop_core.report import html_page, report
 from hpsop_core.runs.controller import RunController
+from tests.two_speeds import TWO_SPEEDS
 
 
 @pytest.fixture(scope="module")
 def file(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """A run that has evaluated nothing: refusals do not need more."""
     file = tmp_path_factory.mktemp("run") / "new.hpsop"
-    RunController(file, load_case("dtc-p4119"), workers=1).close()
+    RunController(file, load_case(TWO_SPEEDS), workers=1).close()
     return file
 
 

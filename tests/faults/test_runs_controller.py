@@ -16,6 +16,7 @@ from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController, front_designs, optimize, planned_case
 from hpsop_core.runs.events import RunEvent
 from hpsop_core.runs.reader import open_run
+from tests.two_speeds import TWO_SPEEDS
 
 
 def test_pause_resume_stop_and_start_again_change_nothing(tmp_path: Path) -> None:
@@ -157,7 +158,7 @@ def test_a_new_run_from_an_old_front_with_other_bounds(tmp_path: Path) -> None:
 
 
 def test_another_total_keeps_the_cases_proportion_of_the_levels() -> None:
-    case = load_case("dtc-p4119")
+    case = load_case(TWO_SPEEDS)
     plans = {
         total: planned_case(case, {"generations": total}).optimization.level1_generations
         for total in (150, 30, 15, 4, 3, 2, 1, 300)

@@ -12,6 +12,7 @@ from hpsop_core.hydro.blade_panels.settings import BladePanelSettings
 from hpsop_core.hydro.blade_panels.solver import solve
 from hpsop_core.hydro.operating_point import chebyshev_nodes
 from hpsop_core.hydro.section_drag import SectionDrag
+from tests.two_speeds import TWO_SPEEDS
 
 DRAG = SectionDrag.full_scale()
 DENSITY, GRAVITY = 1025.0, 9.80665
@@ -84,7 +85,7 @@ def test_the_optimisers_grid_is_fine_enough(blades: int, area: float) -> None:
 
 
 def test_level_2_evaluations_carry_it_beside_kellers_criterion() -> None:
-    case = load_case("dtc-p4119")
+    case = load_case(TWO_SPEEDS)
     result = evaluate(case, level=2)
     service, trial = result.conditions
     for condition in (service, trial):

@@ -14,8 +14,9 @@ from hpsop_core.case.case import Case, case_from_toml, load_case
 from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.reader import open_run
+from tests.two_speeds import TWO_SPEEDS
 
-CASE = load_case("dtc-p4119")
+CASE = load_case(TWO_SPEEDS)
 # Every control character, what TOML itself means something by, and letters beyond ASCII and beyond 16 bits.
 NASTY = [
     *map(chr, range(32)),

@@ -10,8 +10,9 @@ import pytest
 from hpsop_core.case.case import SHIPPED_CASES, case_from_toml, load_case
 from hpsop_core.case.variables import VARIABLE_NAMES, DesignSpace, DesignVariables
 from hpsop_core.errors import InputError
+from tests.two_speeds import TWO_SPEEDS
 
-CASE = load_case("dtc-p4119")
+CASE = load_case(TWO_SPEEDS)
 
 
 @pytest.mark.parametrize("name", SHIPPED_CASES)

@@ -12,8 +12,9 @@ from hpsop_core.evaluation import hull_answer as resistance
 from hpsop_core.evaluation import propeller_answer as propulsion
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.reference import Reference, reference_for
+from tests.two_speeds import TWO_SPEEDS
 
-CASE = load_case("dtc-p4119")
+CASE = load_case(TWO_SPEEDS)
 HULL = {"length_to_breadth": 7.3, "draft": 14.2, "displacement_ratio": 0.97}
 PROPELLER = {"diameter": 9.2, "blade_count": 4, "pitch_ratio": 0.9}
 MEMORIES = (

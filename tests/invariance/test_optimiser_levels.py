@@ -11,13 +11,14 @@ from hpsop_core.optimization.indicators import FrontArchive, hypervolume
 from hpsop_core.optimization.problem import Outcome
 from hpsop_core.runs.controller import optimize
 from hpsop_core.runs.reader import RunReader
+from tests.two_speeds import TWO_SPEEDS
 
 SEEDS = (1, 2, 3)
 
 
 def run_of(folder: Path, seed: int, population: int, generations: int, level1: int) -> RunReader:
     return optimize(
-        load_case("dtc-p4119"),
+        load_case(TWO_SPEEDS),
         folder / f"{seed}.hpsop",
         population=population,
         generations=generations,

@@ -17,6 +17,7 @@ from hpsop_core.optimization.indicators import hypervolume
 from hpsop_core.optimization.problem import FAILED_VIOLATION, Candidate, Outcome, algorithm_view
 from hpsop_core.optimization.two_level import TwoLevelSearch
 from hpsop_core.typing_aliases import Array
+from tests.two_speeds import TWO_SPEEDS
 
 
 def answer(case: Case, candidate: Candidate) -> tuple[tuple[float, float], tuple[float, ...]]:
@@ -75,7 +76,7 @@ class Play:
         return [self.candidates[number].variables for number in ids]
 
 
-def small_case(name: str = "dtc-p4119", **settings: object) -> Case:
+def small_case(name: str = TWO_SPEEDS, **settings: object) -> Case:
     defaults: dict[str, object] = {"population": 12, "generations": 10, "level1_generations": 6}
     return load_case(name).replaced("optimization", **{**defaults, **settings})
 
@@ -271,7 +272,7 @@ def test_a_new_run_may_begin_with_an_old_front_in_other_bounds() -> None:
 
 
 def test_a_space_that_is_used_up_ends_the_search() -> None:
-    initial = load_case("dtc-p4119").initial.variables.as_dict()
+    initial = load_case(TWO_SPEEDS).initial.variables.as_dict()
     fixed = {name: (float(value), float(value)) for name, value in initial.items()} | {"blade_count": (3.0, 7.0)}
     case = small_case(population=8).with_bounds(fixed)
     play = Play(case)

@@ -17,6 +17,7 @@ from hpsop_core.evaluation.fields import WaveField, blade_pressure, hull_pressur
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.geometry.hull.hull import Hull
+from tests.two_speeds import TWO_SPEEDS
 
 FROUDE = 0.27
 
@@ -24,7 +25,7 @@ FROUDE = 0.27
 @pytest.fixture(scope="module")
 def case() -> Case:
     """The recommended case with stated wave coefficients, so that level 1 needs no level 2."""
-    return load_case("dtc-p4119").replaced(
+    return load_case(TWO_SPEEDS).replaced(
         "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
     )
 

@@ -12,8 +12,9 @@ from hpsop_core import evaluate, load_case
 from hpsop_core.evaluation.result import Failed, evaluation_from_dict
 from hpsop_core.runs.packing import dictionary_of, pack, unpack
 from hpsop_core.runs.records import json_text, variables_text
+from tests.two_speeds import TWO_SPEEDS
 
-CASE = load_case("dtc-p4119")
+CASE = load_case(TWO_SPEEDS)
 
 
 def document(level: int = 1, **changes: float) -> dict[str, Any]:

@@ -18,9 +18,10 @@ from hpsop_core.case.sections import InitialSection
 from hpsop_core.case.variables import VARIABLE_NAMES, VARIABLE_TABLE, DesignSpace, DesignVariables
 from hpsop_core.quantities import free_variables, variable_quantities
 from hpsop_core.runs.records import named_variables, variables_text
+from tests.two_speeds import TWO_SPEEDS
 
 ROOT = Path(__file__).resolve().parents[2]
-SHIP = load_case("dtc-p4119")
+SHIP = load_case(TWO_SPEEDS)
 # A towing-tank model, a hydrofoil's tender and a tanker: 6 m, 25 m and 380 m.
 MODEL = SHIP.replaced("initial", length=6.0, breadth=0.86, draft=0.25, diameter=0.15)
 BOAT = SHIP.replaced("initial", length=25.0, breadth=6.0, draft=1.8, diameter=1.1)

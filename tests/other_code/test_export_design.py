@@ -22,11 +22,12 @@ from hpsop_core.geometry.propeller.input import radial_table_from_csv
 from hpsop_core.geometry.propeller.nurbs import propeller_surfaces
 from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.runs.reader import RunReader
+from tests.two_speeds import TWO_SPEEDS
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> RunReader:
-    case = load_case("dtc-p4119").replaced(
+    case = load_case(TWO_SPEEDS).replaced(
         "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
     )
     file = tmp_path_factory.mktemp("run") / "small.hpsop"

@@ -26,6 +26,7 @@ from hpsop_core.report.tables import failure_table
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.reader import RunReader, open_run
 from hpsop_core.runs.records import Failure
+from tests.two_speeds import TWO_SPEEDS
 
 TITLE = "<script>alert('Hull & \"screw\"')</script> $\\frac{1}{2 d·Ω"
 SECTIONS = ["result", "pareto", "propulsion", "form", "drivers", "trust", "assumptions", "front", "run", "failures"]
@@ -34,7 +35,7 @@ FIGURES = ["pareto", "convergence", "open-water", "thrust", "resistance-total", 
 
 
 def quick_case() -> Case:
-    case = load_case("dtc-p4119").replaced(
+    case = load_case(TWO_SPEEDS).replaced(
         "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
     )
     return dataclasses.replace(case, title=TITLE, description="x < y & z </p><b>")

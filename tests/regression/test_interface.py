@@ -120,7 +120,7 @@ def test_results_are_frozen(wigley: Path) -> None:
         (lambda hull: load_hull("nothing.csv", 100.0, 5.0), "nothing.csv"),
         (lambda hull: load_hull("ship.csv"), "length"),
         (lambda hull: load_hull("ship.stl", 100.0, 5.0), "unit"),
-        (lambda hull: load_hull("ship.csv", 100.0, 5.0, "ft"), "metres"),
+        (lambda hull: load_hull("ship.csv", 100.0, 5.0, "cubit"), "unit"),
         (lambda hull: load_hull("dtc", 355.0), "shipped"),
         (lambda hull: load_propeller("blade.csv"), "blades"),
         (lambda hull: load_propeller("blade.csv", 9), "2 to 7"),
