@@ -77,3 +77,11 @@ def convect(values: Array, weights: Array, speed: Array, reaction: Array, out: A
                     other = n + (2 - term) * rows
                     for k in range(values.shape[1]):
                         out[n, k] += weight * values[other, k]
+
+
+@njit(cache=True)
+def combine(convection: Array, vertical: Array, gravity: float, out: Array) -> None:
+    """out = convection + gravity * vertical, (n, n), rounded to the precision of ``out`` in one pass."""
+    for i in range(convection.shape[0]):
+        for j in range(convection.shape[1]):
+            out[i, j] = convection[i, j] + gravity * vertical[i, j]

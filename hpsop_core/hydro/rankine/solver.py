@@ -26,7 +26,7 @@ from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.hull.panels import HullPanels, hull_panels
 from hpsop_core.hydro.rankine.checks import check_answer, check_base_flow, check_froude_numbers, check_panels
 from hpsop_core.hydro.rankine.grid import SurfaceGrid, surface_grid
-from hpsop_core.hydro.rankine.operator import convect, difference_weights
+from hpsop_core.hydro.rankine.operator import combine, convect, difference_weights
 from hpsop_core.hydro.rankine.resistance import plane_resistance, pressure_force, sinkage_and_trim, wave_planes
 from hpsop_core.hydro.rankine.settings import RankineSettings
 from hpsop_core.hydro.singularities.source_panels import (
@@ -36,6 +36,7 @@ from hpsop_core.hydro.singularities.source_panels import (
     point_velocities,
     surface_influence,
 )
+from hpsop_core.kept_memory import keep_freed_memory
 from hpsop_core.one_thread import one_blas_thread
 from hpsop_core.typing_aliases import Array
 
@@ -55,7 +56,7 @@ __all__ = [
     "surface_system",
 ]
 
-SOLVER_VERSION = "rankine-1.1"
+SOLVER_VERSION = "rankine-1.2"
 # Panels off their own plane by this part of their diagonal: on the plane itself the solid angle has two values.
 COLLOCATION_LIFT = 1e-5
 REFINEMENTS = 3
@@ -240,15 +241,17 @@ def surface_strengths(system: SurfaceSystem, gravity: float) -> Array:
     Raises:
         SolverFailure: singular, or the refinement does not converge.
     """
-    matrix = system.convection + gravity * system.vertical
     scale = float(np.max(np.abs(system.forcing)))
+    single = np.zeros(system.vertical.shape, dtype=np.float32)
+    combine(system.convection, system.vertical, gravity, single)
     try:
-        factor = lu_factor(matrix.astype(np.float32), overwrite_a=True, check_finite=False)
+        # LAPACK reads columns first: the rows that stand here are its columns, so it factorises the transpose in place.
+        factor = lu_factor(single.T, overwrite_a=True, check_finite=False)
         strengths = np.zeros_like(system.forcing)
         residual = system.forcing
         for _ in range(1 + REFINEMENTS):
-            strengths = strengths + lu_solve(factor, residual.astype(np.float32), check_finite=False)
-            residual = system.forcing - matrix @ strengths
+            strengths = strengths + lu_solve(factor, residual.astype(np.float32), trans=1, check_finite=False)
+            residual = system.forcing - system.convection @ strengths - gravity * (system.vertical @ strengths)
     except (LinAlgError, ValueError) as problem:
         raise SolverFailure("rankine", f"the free-surface equations cannot be solved ({problem})") from problem
     error = float(np.max(np.abs(residual)))
@@ -302,6 +305,7 @@ def solve_panels(
 ) -> RankineResult:
     """As ``solve``, for any hull given as panels."""
     numbers = check_froude_numbers(froude_numbers)
+    keep_freed_memory()
     return _solve(body, numbers, settings, fields)
 
 

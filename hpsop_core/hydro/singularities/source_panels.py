@@ -159,44 +159,87 @@ def _near(
 
 
 @njit(cache=True, inline="always")
-def _far(rx: float, ry: float, rz: float, area: float, moment: Array) -> tuple[float, float, float]:
+def _far(
+    rx: float, ry: float, rz: float, area: float,
+    xx: float, yy: float, zz: float, xy: float, xz: float, yz: float,
+) -> tuple[float, float, float]:  # fmt: skip
     """4 pi times the velocity at distance (rx, ry, rz) from the centroid: monopole and quadrupole."""
     r2 = rx * rx + ry * ry + rz * rz
     inverse_2 = 1.0 / r2
     inverse_3 = inverse_2 * math.sqrt(inverse_2)
     inverse_5 = inverse_3 * inverse_2
-    mx = moment[0] * rx + moment[3] * ry + moment[4] * rz
-    my = moment[3] * rx + moment[1] * ry + moment[5] * rz
-    mz = moment[4] * rx + moment[5] * ry + moment[2] * rz
-    trace = moment[0] + moment[1] + moment[2]
-    radial = area * inverse_3 + 7.5 * (mx * rx + my * ry + mz * rz) * inverse_5 * inverse_2 - 1.5 * trace * inverse_5
+    mx = xx * rx + xy * ry + xz * rz
+    my = xy * rx + yy * ry + yz * rz
+    mz = xz * rx + yz * ry + zz * rz
+    radial = area * inverse_3 + (7.5 * (mx * rx + my * ry + mz * rz) * inverse_2 - 1.5 * (xx + yy + zz)) * inverse_5
     return radial * rx - 3.0 * mx * inverse_5, radial * ry - 3.0 * my * inverse_5, radial * rz - 3.0 * mz * inverse_5
 
 
-@njit(cache=True)
+# Products and sums may be contracted into one rounding (a choice of the compiler, the same on one machine for every
+# call); nothing else of the arithmetic's order may change.
+_KERNEL = {"cache": True, "fastmath": {"contract"}, "error_model": "numpy"}
+
+
+@njit(**_KERNEL)
+def _far_row(
+    px: float, py: float, pz: float, image_z: bool, columns: Array, out_x: Array, out_y: Array, out_z: Array, gap: Array
+) -> None:
+    """One row of velocities by the far expansion alone, and by how much the nearest image is beyond its limit.
+
+    Without a branch inside, and over contiguous columns: the compiler makes it four or eight panels at a time. What
+    the expansion gives near a panel is replaced afterwards.
+    """
+    centre_x, centre_y, centre_z, area, limit = columns[0], columns[1], columns[2], columns[3], columns[4]
+    xx, yy, zz, xy, xz, yz = columns[5], columns[6], columns[7], columns[8], columns[9], columns[10]
+    scale = 1.0 / _FOUR_PI
+    for j in range(area.shape[0]):
+        rx, ry, rz = px - centre_x[j], py - centre_y[j], pz - centre_z[j]
+        sy = -py - centre_y[j]
+        vx, vy, vz = _far(rx, ry, rz, area[j], xx[j], yy[j], zz[j], xy[j], xz[j], yz[j])
+        wx, wy, wz = _far(rx, sy, rz, area[j], xx[j], yy[j], zz[j], xy[j], xz[j], yz[j])
+        out_x[j] = scale * (vx + wx)
+        out_y[j] = scale * (vy - wy)
+        out_z[j] = scale * (vz + wz)
+        gap[j] = rx * rx + min(ry * ry, sy * sy) + rz * rz - limit[j]
+    if image_z:
+        for j in range(area.shape[0]):
+            rx, ry, rz = px - centre_x[j], py - centre_y[j], -pz - centre_z[j]
+            sy = -py - centre_y[j]
+            vx, vy, vz = _far(rx, ry, rz, area[j], xx[j], yy[j], zz[j], xy[j], xz[j], yz[j])
+            wx, wy, wz = _far(rx, sy, rz, area[j], xx[j], yy[j], zz[j], xy[j], xz[j], yz[j])
+            out_x[j] += scale * (vx + wx)
+            out_y[j] += scale * (vy - wy)
+            out_z[j] -= scale * (vz + wz)
+            gap[j] = min(gap[j], rx * rx + min(ry * ry, sy * sy) + rz * rz - limit[j])
+
+
+@njit(**_KERNEL)
 def _panel_velocities(
     points: Array,
     image_z: bool,
-    far_diagonals: float,
+    columns: Array,
     corners: Array,
-    centre: Array,
     normal: Array,
-    area: Array,
-    diagonal: Array,
     edge_normal: Array,
     edge_length: Array,
-    second_moment: Array,
     out_x: Array,
     out_y: Array,
     out_z: Array,
 ) -> None:
-    """Fill (n, m) velocities of m panels (each with its y-image, and its z-images when asked) at n points."""
+    """Fill (n, m) velocities of m panels (each with its y-image, and its z-images when asked) at n points.
+
+    Args:
+        columns: (11, m) of the panels: centroid, area, square of the distance up to which the closed form is taken,
+            second moments.
+    """
     scale = 1.0 / _FOUR_PI
-    far_square = far_diagonals * far_diagonals
+    gap = np.zeros(columns.shape[1])
     for i in range(points.shape[0]):
         px, py, pz = points[i, 0], points[i, 1], points[i, 2]
-        for j in range(area.shape[0]):
-            limit = far_square * diagonal[j] * diagonal[j]
+        _far_row(px, py, pz, image_z, columns, out_x[i], out_y[i], out_z[i], gap)
+        for j in range(gap.shape[0]):
+            if gap[j] > 0.0:
+                continue
             sx = 0.0
             sy = 0.0
             sz = 0.0
@@ -206,9 +249,12 @@ def _panel_velocities(
                 sign_z = 1.0 if image < 2 else -1.0
                 qy = sign_y * py
                 qz = sign_z * pz
-                rx, ry, rz = px - centre[j, 0], qy - centre[j, 1], qz - centre[j, 2]
-                if rx * rx + ry * ry + rz * rz > limit:
-                    vx, vy, vz = _far(rx, ry, rz, area[j], second_moment[j])
+                rx, ry, rz = px - columns[0, j], qy - columns[1, j], qz - columns[2, j]
+                if rx * rx + ry * ry + rz * rz > columns[4, j]:
+                    vx, vy, vz = _far(
+                        rx, ry, rz, columns[3, j], columns[5, j], columns[6, j], columns[7, j],
+                        columns[8, j], columns[9, j], columns[10, j],
+                    )  # fmt: skip
                 else:
                     vx, vy, vz = _near(px, qy, qz, corners[j], normal[j], edge_normal[j], edge_length[j])
                 sx += vx
@@ -232,42 +278,40 @@ def panel_velocities(
     """
     shape = (points.shape[0], panels.count)
     out = (np.zeros(shape), np.zeros(shape), np.zeros(shape))
+    limit = (far_diagonals * panels.diagonal) ** 2
+    # vstack keeps the order of its parts: transposed parts would give strided columns
+    columns = np.ascontiguousarray(np.vstack([panels.centre.T, panels.area, limit, panels.second_moment.T]))
     _panel_velocities(
-        points,
-        image_z,
-        far_diagonals,
-        panels.corners,
-        panels.centre,
-        panels.normal,
-        panels.area,
-        panels.diagonal,
-        panels.edge_normal,
-        panels.edge_length,
-        panels.second_moment,
-        *out,
+        points, image_z, columns, panels.corners, panels.normal, panels.edge_normal, panels.edge_length, *out
     )
     return out
 
 
-@njit(cache=True)
-def _point_velocities(points: Array, sources: Array, weight: Array, out_x: Array, out_y: Array, out_z: Array) -> None:
-    """Fill (n, m) velocities of m point sources of strength ``weight``, with their y-images, at n points."""
-    scale = 1.0 / _FOUR_PI
+@njit(**_KERNEL)
+def _point_velocities(points: Array, columns: Array, out_x: Array, out_y: Array, out_z: Array) -> None:
+    """Fill (n, m) velocities of m point sources, with their y-images, at n points; columns: x, y, z, weight/4 pi."""
+    x, y, z, strength = columns[0], columns[1], columns[2], columns[3]
     for i in range(points.shape[0]):
         px, py, pz = points[i, 0], points[i, 1], points[i, 2]
-        for j in range(sources.shape[0]):
-            rx = px - sources[j, 0]
-            ry = py - sources[j, 1]
-            sy = py + sources[j, 1]
-            rz = pz - sources[j, 2]
+        row_x, row_y, row_z = out_x[i], out_y[i], out_z[i]
+        for j in range(x.shape[0]):
+            rx = px - x[j]
+            ry = py - y[j]
+            sy = py + y[j]
+            rz = pz - z[j]
             plane = rx * rx + rz * rz
             r2 = plane + ry * ry
             s2 = plane + sy * sy
-            near = scale * weight[j] / (r2 * math.sqrt(r2))
-            image = scale * weight[j] / (s2 * math.sqrt(s2))
-            out_x[i, j] = (near + image) * rx
-            out_y[i, j] = near * ry + image * sy
-            out_z[i, j] = (near + image) * rz
+            near = strength[j] / (r2 * math.sqrt(r2))
+            image = strength[j] / (s2 * math.sqrt(s2))
+            row_x[j] = (near + image) * rx
+            row_y[j] = near * ry + image * sy
+            row_z[j] = (near + image) * rz
+
+
+def _columns(sources: Array, weight: Array) -> Array:
+    """(4, m) contiguous x, y, z and weight/4 pi of point sources."""
+    return np.ascontiguousarray(np.vstack([sources.T, weight / _FOUR_PI]))
 
 
 def point_velocities(points: Array, sources: Array, weight: Array) -> tuple[Array, Array, Array]:
@@ -280,30 +324,28 @@ def point_velocities(points: Array, sources: Array, weight: Array) -> tuple[Arra
     """
     shape = (points.shape[0], sources.shape[0])
     out = (np.zeros(shape), np.zeros(shape), np.zeros(shape))
-    _point_velocities(points, sources, weight, *out)
+    _point_velocities(points, _columns(sources, weight), *out)
     return out
 
 
-@njit(cache=True)
-def _surface_influence(
-    points: Array, sources: Array, weight: Array, u: Array, v: Array, along: Array, vertical: Array
-) -> None:
+@njit(**_KERNEL)
+def _surface_influence(points: Array, columns: Array, u: Array, v: Array, along: Array, vertical: Array) -> None:
     """Fill (n, m): U.grad(p) and p_z at points on z = 0 for unit point sources with their y-images."""
-    scale = 1.0 / _FOUR_PI
+    x, y, height, strength = columns[0], columns[1], columns[2], columns[3]
     for i in range(points.shape[0]):
         px, py, ui, vi = points[i, 0], points[i, 1], u[i], v[i]
-        for j in range(sources.shape[0]):
-            rx = px - sources[j, 0]
-            ry = py - sources[j, 1]
-            sy = py + sources[j, 1]
-            height = sources[j, 2]
-            plane = rx * rx + height * height
+        row, down = along[i], vertical[i]
+        for j in range(x.shape[0]):
+            rx = px - x[j]
+            ry = py - y[j]
+            sy = py + y[j]
+            plane = rx * rx + height[j] * height[j]
             r2 = plane + ry * ry
             s2 = plane + sy * sy
-            near = scale * weight[j] / (r2 * math.sqrt(r2))
-            image = scale * weight[j] / (s2 * math.sqrt(s2))
-            along[i, j] = ui * (near + image) * rx + vi * (near * ry + image * sy)
-            vertical[i, j] = -(near + image) * height
+            near = strength[j] / (r2 * math.sqrt(r2))
+            image = strength[j] / (s2 * math.sqrt(s2))
+            row[j] = ui * (near + image) * rx + vi * (near * ry + image * sy)
+            down[j] = -(near + image) * height[j]
 
 
 def surface_influence(points: Array, sources: Array, weight: Array, u: Array, v: Array) -> tuple[Array, Array]:
@@ -320,5 +362,5 @@ def surface_influence(points: Array, sources: Array, weight: Array, u: Array, v:
     """
     shape = (points.shape[0], sources.shape[0])
     along, vertical = np.zeros(shape), np.zeros(shape)
-    _surface_influence(points, sources, weight, u, v, along, vertical)
+    _surface_influence(points, _columns(sources, weight), u, v, along, vertical)
     return along, vertical
