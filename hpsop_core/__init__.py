@@ -23,7 +23,8 @@ to_geomdl          hull or propeller as geomdl's NURBS surfaces
 1.0
 
 What stands where, from the ground up: ``typing_aliases``, ``errors``, ``reading`` (files that strangers name),
-``version``, ``model_test``, ``markup`` (escaping), ``one_thread`` (the same bits everywhere) and ``assets`` (shipped
+``version``, ``model_test``, ``markup`` (escaping), ``one_thread`` (the same bits everywhere), ``kept_memory``
+(of solvers) and ``assets`` (shipped
 files); ``geometry`` (shapes), ``hydro`` (solvers), ``machinery`` (the engine), ``case`` (what the user states),
 ``evaluation`` (a design's numbers), ``quantities`` (how they are written), ``charts`` (how they are drawn),
 ``optimization`` (the search), ``runs`` (the file, the workers, the controller); ``export``, ``report``, ``validation``

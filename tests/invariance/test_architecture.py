@@ -28,6 +28,7 @@ ORDER = (
     "model_test",
     "markup",
     "one_thread",
+    "kept_memory",
     "assets",
     "geometry",
     "hydro",
