@@ -17,6 +17,7 @@ from __future__ import annotations
 
 import numpy as np
 from numba import njit
+from numpy.typing import NDArray
 
 from hpsop_core.typing_aliases import Array
 
@@ -80,7 +81,7 @@ def convect(values: Array, weights: Array, speed: Array, reaction: Array, out: A
 
 
 @njit(cache=True)
-def combine(convection: Array, vertical: Array, gravity: float, out: Array) -> None:
+def combine(convection: Array, vertical: Array, gravity: float, out: NDArray[np.float32]) -> None:
     """out = convection + gravity * vertical, (n, n), rounded to the precision of ``out`` in one pass."""
     for i in range(convection.shape[0]):
         for j in range(convection.shape[1]):

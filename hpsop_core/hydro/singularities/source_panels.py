@@ -18,6 +18,7 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
+from typing import Any
 
 import numpy as np
 from numba import njit
@@ -177,7 +178,7 @@ def _far(
 
 # Products and sums may be contracted into one rounding (a choice of the compiler, the same on one machine for every
 # call); nothing else of the arithmetic's order may change.
-_KERNEL = {"cache": True, "fastmath": {"contract"}, "error_model": "numpy"}
+_KERNEL: Any = {"cache": True, "fastmath": {"contract"}, "error_model": "numpy"}
 
 
 @njit(**_KERNEL)
