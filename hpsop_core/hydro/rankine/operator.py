@@ -16,9 +16,9 @@ divided by the same difference of x.
 from __future__ import annotations
 
 import numpy as np
-from numba import njit
 from numpy.typing import NDArray
 
+from hpsop_core.compiled import njit
 from hpsop_core.typing_aliases import Array
 
 # Columns i + 2 .. i - 3.
@@ -56,7 +56,7 @@ def difference_weights(x: Array) -> Array:
     return weights
 
 
-@njit(cache=True)
+@njit()
 def convect(values: Array, weights: Array, speed: Array, reaction: Array, out: Array) -> None:
     """out = speed * D values + reaction * values for every column of ``values``, D the difference along the rows.
 
@@ -80,7 +80,7 @@ def convect(values: Array, weights: Array, speed: Array, reaction: Array, out: A
                         out[n, k] += weight * values[other, k]
 
 
-@njit(cache=True)
+@njit()
 def combine(convection: Array, vertical: Array, gravity: float, out: NDArray[np.float32]) -> None:
     """out = convection + gravity * vertical, (n, n), rounded to the precision of ``out`` in one pass."""
     for i in range(convection.shape[0]):

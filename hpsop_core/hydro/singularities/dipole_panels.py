@@ -24,8 +24,8 @@ from math import atan2, cos, log, pi, sin, sqrt
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from hpsop_core.compiled import njit
 from hpsop_core.typing_aliases import Array, IntArray
 
 FAR_DIAGONALS = 3.0
@@ -116,7 +116,7 @@ def _twist_moments(local: Array) -> list[Array]:
     return [-(xx + yy + zz), 3.0 * xx, 3.0 * yy, 3.0 * zz, 3.0 * (total[:, 0, 1] + total[:, 1, 0])]
 
 
-@njit(cache=True)
+@njit()
 def _bilinear_height(local: Any, j: int, x: float, y: float) -> float:
     """Height of bilinear panel j at the local point (x, y): Newton on the inverse map, four steps."""
     u = 0.5
@@ -142,7 +142,7 @@ def _bilinear_height(local: Any, j: int, x: float, y: float) -> float:
     return float(z0 * (1 - u) * (1 - v) + z1 * u * (1 - v) + z2 * u * v + z3 * (1 - u) * v)
 
 
-@njit(cache=True)
+@njit()
 def _dipole_expansion(moments: Any, j: int, x: float, y: float, z: float, r2: float) -> float:
     """Far field of unit dipoles on panel j at the local point (x, y, z): moments up to the second order."""
     q = 1.0 / r2
@@ -154,7 +154,7 @@ def _dipole_expansion(moments: Any, j: int, x: float, y: float, z: float, r2: fl
     return float((z * flat + twist) * q * sqrt(q))
 
 
-@njit(cache=True)
+@njit()
 def _source_expansion(moments: Any, j: int, x: float, y: float, r2: float) -> float:
     """Far field of unit sources on panel j, taken flat: moments up to the second order."""
     q = 1.0 / r2
@@ -163,7 +163,7 @@ def _source_expansion(moments: Any, j: int, x: float, y: float, r2: float) -> fl
     return float(sqrt(q) * (area + q * (-0.5 * (ixx + iyy) + 1.5 * q * form)))
 
 
-@njit(cache=True)
+@njit()
 def _flat_solid_angle(local: Any, j: int, x: float, y: float, z: float) -> float:
     """Size of the solid angle of panel j projected on its mean plane (what the source potential needs)."""
     ax, ay = local[j, 0, 0] - x, local[j, 0, 1] - y
@@ -184,7 +184,7 @@ def _flat_solid_angle(local: Any, j: int, x: float, y: float, z: float) -> float
     return float(abs(2.0 * atan2(triple_1 * real_2 + triple_2 * real_1, real_1 * real_2 - triple_1 * triple_2)))
 
 
-@njit(cache=True)
+@njit()
 def _solid_angle(local: Any, j: int, x: float, y: float, z: float) -> float:
     """Dipole influence of bilinear panel j at the local point (x, y, z)."""
     ax, ay, az = local[j, 0, 0] - x, local[j, 0, 1] - y, local[j, 0, 2] - z
@@ -213,7 +213,7 @@ def _solid_angle(local: Any, j: int, x: float, y: float, z: float) -> float:
     return float(omega)
 
 
-@njit(cache=True)
+@njit()
 def _own_solid_angle(local: Any, moments: Any, j: int, x: float, y: float) -> float:
     """Principal value of the dipole influence of bilinear panel j at its own point (x, y).
 
@@ -224,7 +224,7 @@ def _own_solid_angle(local: Any, moments: Any, j: int, x: float, y: float) -> fl
     return float(_solid_angle(local, j, x, y, _bilinear_height(local, j, x, y) + lift) - _TWO_PI)
 
 
-@njit(cache=True)
+@njit()
 def _source_potential(local: Any, j: int, x: float, y: float, z: float) -> float:
     """Source influence of panel j, taken flat in its mean plane, at the local point (x, y, z)."""
     total = 0.0
@@ -244,7 +244,7 @@ def _source_potential(local: Any, j: int, x: float, y: float, z: float) -> float
     return float(total - abs(z) * _flat_solid_angle(local, j, x, y, z))
 
 
-@njit(cache=True)
+@njit()
 def _body_influence(
     points: Any, own: Any, blade_count: int, centre: Any, axes: Any, local: Any, moments: Any, far: float
 ) -> Any:
@@ -281,7 +281,7 @@ def _body_influence(
     return dipole, source
 
 
-@njit(cache=True)
+@njit()
 def _strip_influence(
     points: Any,
     blade_count: int,

@@ -21,8 +21,8 @@ from dataclasses import dataclass
 from typing import Any
 
 import numpy as np
-from numba import njit
 
+from hpsop_core.compiled import njit
 from hpsop_core.typing_aliases import Array
 
 FAR_DIAGONALS = 4.0
@@ -109,7 +109,7 @@ def flat_panels(quads: Array) -> SourcePanels:
     )
 
 
-@njit(cache=True, inline="always")
+@njit(inline="always")
 def _solid_angle_triangle(
     ax: float, ay: float, az: float, bx: float, by: float, bz: float, cx: float, cy: float, cz: float,
     ra: float, rb: float, rc: float,
@@ -125,7 +125,7 @@ def _solid_angle_triangle(
     return -2.0 * math.atan2(triple, denominator)
 
 
-@njit(cache=True)
+@njit()
 def _near(
     px: float, py: float, pz: float, corners: Array, normal: Array, edge_normal: Array, edge_length: Array
 ) -> tuple[float, float, float]:
@@ -159,7 +159,7 @@ def _near(
     return vx, vy, vz
 
 
-@njit(cache=True, inline="always")
+@njit(inline="always")
 def _far(
     rx: float, ry: float, rz: float, area: float,
     xx: float, yy: float, zz: float, xy: float, xz: float, yz: float,

@@ -1,0 +1,58 @@
+"""Compiled kernels, kept on the disk where that is possible.
+
+numba keeps what it compiled beside the source or in the user's cache folder. Where neither can be written (an
+installation for all, an account without a home) it refuses to compile at all, and a damaged file of its cache ends the
+program: here the kernels are compiled for this process alone, or once more.
+"""
+
+from __future__ import annotations
+
+import contextlib
+import logging
+import os
+from collections.abc import Callable
+from typing import Any, TypeVar
+
+import numba
+
+_LOG = logging.getLogger("hpsop")
+_Function = TypeVar("_Function", bound=Callable[..., Any])
+
+
+def njit(**options: Any) -> Callable[[_Function], _Function]:
+    """As ``numba.njit`` with a cache, which is done without or made anew where it must be."""
+
+    def compiled(function: _Function) -> _Function:
+        try:
+            dispatcher: Any = numba.njit(cache=True, **options)(function)
+        except RuntimeError:
+            # no folder that can be written
+            plain: _Function = numba.njit(**options)(function)
+            return plain
+        _mend(dispatcher)
+        kept: _Function = dispatcher
+        return kept
+
+    return compiled
+
+
+def _mend(dispatcher: Any) -> None:
+    """A cache that cannot be read, or written, is as good as none; what is damaged is taken away."""
+    cache = dispatcher._cache
+    load, save = cache.load_overload, cache.save_overload
+
+    def load_overload(signature: Any, target: Any) -> Any:
+        try:
+            return load(signature, target)
+        # whatever the bytes of a damaged pickle may raise
+        except Exception as error:  # noqa: BLE001
+            _LOG.info("a compiled kernel's cache is damaged and made anew: %s", error)
+            with contextlib.suppress(OSError, AttributeError):
+                os.unlink(cache._cache_file._index_path)
+            return None
+
+    def save_overload(signature: Any, data: Any) -> None:
+        with contextlib.suppress(OSError):
+            save(signature, data)
+
+    cache.load_overload, cache.save_overload = load_overload, save_overload
