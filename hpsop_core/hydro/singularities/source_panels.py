@@ -18,7 +18,6 @@ from __future__ import annotations
 
 import math
 from dataclasses import dataclass
-from typing import Any
 
 import numpy as np
 
@@ -178,10 +177,10 @@ def _far(
 
 # Products and sums may be contracted into one rounding (a choice of the compiler, the same on one machine for every
 # call); nothing else of the arithmetic's order may change.
-_KERNEL: Any = {"cache": True, "fastmath": {"contract"}, "error_model": "numpy"}
+_CONTRACT = {"contract"}
 
 
-@njit(**_KERNEL)
+@njit(fastmath=_CONTRACT, error_model="numpy")
 def _far_row(
     px: float, py: float, pz: float, image_z: bool, columns: Array, out_x: Array, out_y: Array, out_z: Array, gap: Array
 ) -> None:
@@ -214,7 +213,7 @@ def _far_row(
             gap[j] = min(gap[j], rx * rx + min(ry * ry, sy * sy) + rz * rz - limit[j])
 
 
-@njit(**_KERNEL)
+@njit(fastmath=_CONTRACT, error_model="numpy")
 def _panel_velocities(
     points: Array,
     image_z: bool,
@@ -288,7 +287,7 @@ def panel_velocities(
     return out
 
 
-@njit(**_KERNEL)
+@njit(fastmath=_CONTRACT, error_model="numpy")
 def _point_velocities(points: Array, columns: Array, out_x: Array, out_y: Array, out_z: Array) -> None:
     """Fill (n, m) velocities of m point sources, with their y-images, at n points; columns: x, y, z, weight/4 pi."""
     x, y, z, strength = columns[0], columns[1], columns[2], columns[3]
@@ -329,7 +328,7 @@ def point_velocities(points: Array, sources: Array, weight: Array) -> tuple[Arra
     return out
 
 
-@njit(**_KERNEL)
+@njit(fastmath=_CONTRACT, error_model="numpy")
 def _surface_influence(points: Array, columns: Array, u: Array, v: Array, along: Array, vertical: Array) -> None:
     """Fill (n, m): U.grad(p) and p_z at points on z = 0 for unit point sources with their y-images."""
     x, y, height, strength = columns[0], columns[1], columns[2], columns[3]
