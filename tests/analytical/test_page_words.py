@@ -18,12 +18,13 @@ from hpsop_core.charts.propulsion import resistance_chart
 from hpsop_core.evaluation.coverage import KEPT, LIMIT, UNCOVERED, VIOLATED, standings
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.quantities import conditions_of
+from tests.two_speeds import TWO_SPEEDS
 
 
 @pytest.fixture(scope="module")
 def case() -> Case:
     """The recommended case with stated wave coefficients, so that level 1 needs no level 2."""
-    return load_case("dtc-p4119").replaced(
+    return load_case(TWO_SPEEDS).replaced(
         "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
     )
 
