@@ -5,6 +5,8 @@
 * surfaces: NURBS; exchange: handed to geomdl, openNURBS and OpenCASCADE; rhino: 3DM; solids: STEP and IGES
 * meshes: STL and GLB; slivers: taken out of a mesh; lines: DXF
 * vtp: waves and pressures for ParaView; panel_files: GDF; pff: the propeller free format
+* sheets: drawings on paper, DXF and SVG
+* openfoam: a case for viscous flow
 * tables, offsets: CSV
 
 ``hpsop_core.export(run, design, folder, formats=None, force=False)`` writes a design's files, all of them or none.

@@ -45,11 +45,15 @@ _MEANING = {
     "design.step": "hull and propeller as a closed solid each, faces named; millimetres",
     "design.iges": "the same as IGES, manifold solids (entity 186); millimetres",
     "lines.dxf": "stations, waterlines, buttocks, profile (port side) and blade sections as 3D polylines",
+    "drawings.dxf": "lines plan and propeller drawing as two layouts on A1; millimetres of paper",
+    "lines_plan.svg": "the lines plan on A1, to print",
+    "propeller_drawing.svg": "the propeller drawing on A1, to print",
     "waves_N.vtp": "the water surface at condition N, for ParaView",
     "pressure_hull_N.vtp": "pressures on the hull at condition N, of level 2",
     "pressure_blades_N.vtp": "pressures on blades and hub at condition N, of level 2",
     "hull.gdf": "panels below the waterline for seakeeping programs; origin amidships on the waterline",
     "propeller.pff": "the blade's sections in the propeller free format; millimetres",
+    "openfoam": "a case for OpenFOAM: towed, then driven by an actuator disc; its README.txt says what to run",
     "offsets.csv": "half-breadths; 'hpsop resistance --offsets offsets.csv' reads it again",
     "propeller.csv": "radial table; 'hpsop open-water --geometry propeller.csv' reads it again",
     "hydrostatics.csv": "hydrostatics and sectional areas",
@@ -190,7 +194,13 @@ def _write(design: LeavingDesign, folder: Path, formats: Sequence[str]) -> list[
         from hpsop_core.export.vtp import write_fields
 
         write_fields(folder, design)
+    if "openfoam" in formats:
+        from hpsop_core.export.openfoam.case import write_openfoam
+
+        write_openfoam(folder / "openfoam", design)
     texts: dict[str, str] = {}
+    if {"dxf", "svg"} & set(formats):
+        texts |= _drawings(design, folder, formats)
     if "csv" in formats:
         texts |= {
             "offsets.csv": tables.offsets_table(design.hull),
@@ -211,7 +221,7 @@ def _write(design: LeavingDesign, folder: Path, formats: Sequence[str]) -> list[
         texts["hull.gdf"] = panels_gdf(design.hull, design.title)
     for name, text in texts.items():
         (folder / name).write_text(text, encoding="utf-8")
-    made = sorted((file for file in folder.iterdir() if file.is_file()), key=_place)
+    made = sorted(folder.iterdir(), key=_place)
     about = _ABOUT.format(
         title=design.title,
         version=__version__,
@@ -222,7 +232,22 @@ def _write(design: LeavingDesign, folder: Path, formats: Sequence[str]) -> list[
     )
     readme = folder / "README.txt"
     readme.write_text(about, encoding="utf-8")
-    return [*made, readme]
+    inside = (sorted(item.rglob("*")) if item.is_dir() else [item] for item in made)
+    return [*(file for files in inside for file in files if file.is_file()), readme]
+
+
+def _drawings(design: LeavingDesign, folder: Path, formats: Sequence[str]) -> dict[str, str]:
+    """The sheets: written as DXF, returned as SVG by name."""
+    from hpsop_core.export.sheets.lines_plan import lines_plan
+    from hpsop_core.export.sheets.paper import sheet_svg, write_sheets_dxf
+    from hpsop_core.export.sheets.propeller_drawing import propeller_drawing
+
+    sheets = lines_plan(design), propeller_drawing(design)
+    if "dxf" in formats:
+        write_sheets_dxf(folder / "drawings.dxf", sheets)
+    if "svg" not in formats:
+        return {}
+    return {"lines_plan.svg": sheet_svg(sheets[0]), "propeller_drawing.svg": sheet_svg(sheets[1])}
 
 
 def _write_surfaces(design: LeavingDesign, folder: Path, formats: Sequence[str]) -> float:

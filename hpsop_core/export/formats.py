@@ -7,15 +7,15 @@ from importlib.util import find_spec
 
 from hpsop_core.errors import InputError
 
-FORMATS = ("stl", "glb", "3dm", "step", "iges", "dxf", "csv", "json", "vtk", "pff", "gdf")
+FORMATS = ("stl", "glb", "3dm", "step", "iges", "dxf", "csv", "json", "vtk", "pff", "openfoam", "gdf", "svg")
 
 OF_OPENCASCADE = ("step", "iges")
 """Written by OpenCASCADE, the extra ``hpsop[cad]``."""
 
-SOLVED = ("vtk",)
-"""Need a solver once more for every condition, which takes seconds."""
+ASKED_FOR = ("vtk", "openfoam")
+"""VTK needs a solver once more for every condition, which takes seconds; OpenFOAM's case is of no use to most."""
 
-USUAL_FORMATS = tuple(name for name in FORMATS if name not in OF_OPENCASCADE + SOLVED)
+USUAL_FORMATS = tuple(name for name in FORMATS if name not in OF_OPENCASCADE + ASKED_FOR)
 """Written where none is named: the same on every machine, and quickly."""
 
 

@@ -42,6 +42,20 @@ def write_stl(hull_path: Path, propeller_path: Path, hull: Hull, propeller: Prop
     Raises:
         OSError: a file cannot be written.
     """
+    write_hull_stl(hull_path, hull)
+    screw, topology = placed_propeller_mesh(hull, propeller), propeller_topology(propeller.blade_count, "export")
+    regions = np.repeat([0, 1], [len(topology.blades), len(topology.hub)])
+    # The edges of a trailing edge are not kept: where it runs into the fillet, it is narrower than any mesh.
+    cleaned = without_slivers(np.array(screw.vertices), np.array(screw.faces), regions, np.pi)
+    _write_regions(propeller_path, ("blades", "hub"), *cleaned)
+
+
+def write_hull_stl(path: Path, hull: Hull) -> None:
+    """The hull alone, as ``write_stl`` writes it.
+
+    Raises:
+        OSError: the file cannot be written.
+    """
     ship = hull_mesh(hull, "export")
     region = np.asarray(ship.face_attributes["region"], dtype=np.int64)
     # Above and below the waterline are cleaned apart, so that it stays a line of edges.
@@ -49,12 +63,7 @@ def write_stl(hull_path: Path, propeller_path: Path, hull: Hull, propeller: Prop
     vertices, faces, place = without_slivers(
         np.array(ship.vertices), np.array(ship.faces), 2 * region + wet, _SHARP_EDGE
     )
-    _write_regions(hull_path, REGIONS, vertices, faces, place // 2)
-    screw, topology = placed_propeller_mesh(hull, propeller), propeller_topology(propeller.blade_count, "export")
-    regions = np.repeat([0, 1], [len(topology.blades), len(topology.hub)])
-    # The edges of a trailing edge are not kept: where it runs into the fillet, it is narrower than any mesh.
-    cleaned = without_slivers(np.array(screw.vertices), np.array(screw.faces), regions, np.pi)
-    _write_regions(propeller_path, ("blades", "hub"), *cleaned)
+    _write_regions(path, REGIONS, vertices, faces, place // 2)
 
 
 def _write_regions(path: Path, names: Sequence[str], vertices: Array, faces: IntArray, place: IntArray) -> None:
