@@ -23,7 +23,7 @@ RINGS = 3
 _AFT, _FORE, _SIDE, _BELOW, _ABOVE = -3.0, 2.5, 1.75, -1.5, 0.5
 _CELLS_A_LENGTH = 8
 # Boxes of refinement in lengths: x from, x to, y, below and above the waterline, for a ship that the last one holds;
-# for others the last three grow with the ship. Each ends a layer of cells or more within the one before it: snappyHexMesh
+# for others all grow with the ship. Each ends a layer of cells or more within the one before it: snappyHexMesh
 # would refine a cell with much finer neighbours, which it cannot with cells that were refined in two directions only.
 _BOXES = (
     (-0.9, 1.6, 0.8, -0.5, 0.5),

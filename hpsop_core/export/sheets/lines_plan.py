@@ -5,8 +5,8 @@ from __future__ import annotations
 import numpy as np
 
 from hpsop_core.export.design import LeavingDesign
-from hpsop_core.export.lines import ENDS, design_lines
 from hpsop_core.export.sheets.paper import MARGIN, TITLE_HEIGHT, WIDTH, Sheet, View, standard_scale
+from hpsop_core.geometry.hull.lines import ENDS, plan_lines
 
 _LEFT, _ROOM = 28.0, 785.0
 
@@ -25,9 +25,8 @@ def lines_plan(design: LeavingDesign) -> Sheet:
     body_scale = standard_scale(max(hull.breadth, 0.5 * hull.depth), 270.0)
     body = View(0.55 * WIDTH, side.y + mm * hull.depth + 45.0, body_scale)
     middle = 0.5 * hull.length
-    for layer, line in design_lines(hull, design.propeller):
-        if layer == "BLADE_SECTIONS":
-            continue
+    for cut in plan_lines(hull):
+        layer, line = cut.layer, cut.points
         kind = {"DESIGN_WATERLINE": "WATER", "PROFILE": "OUTLINE"}.get(layer, "LINES")
         if layer == "STATIONS":
             sign = -1.0 if line[:, 0].mean() < middle - 1e-6 * hull.length else 1.0
