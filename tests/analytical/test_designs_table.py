@@ -24,8 +24,9 @@ from explorer.state.run_picture import GenerationPicture, RunPicture
 from explorer.state.table_options import TableOptions
 from hpsop_core.case.case import load_case
 from hpsop_core.errors import InputError
+from tests.two_speeds import TWO_SPEEDS
 
-CASE = load_case("dtc-p4119")
+CASE = load_case(TWO_SPEEDS)
 COLUMNS = ("length", "breadth", "delivered_power_1", "thrust_1", "thrust_deduction_1", "propulsive_efficiency_1")
 NONE: frozenset[int] = frozenset()
 

@@ -13,11 +13,12 @@ from hpsop_core.charts.lines_plan import line_name, lines_csv, lines_plan_chart
 from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.hull.lines import BUTTOCKS, HullLine, plan_lines
+from tests.two_speeds import TWO_SPEEDS
 
 
 @pytest.fixture(scope="module")
 def hull() -> Hull:
-    case = load_case("dtc-p4119")
+    case = load_case(TWO_SPEEDS)
     return design_hull(case, case.initial.variables)
 
 

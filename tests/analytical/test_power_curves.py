@@ -20,6 +20,7 @@ from hpsop_core.evaluation.power_curves import PowerCurves, power_curves
 from hpsop_core.evaluation.reference import reference_for
 from hpsop_core.evaluation.result import Ok
 from hpsop_core.machinery.engine import Engine
+from tests.two_speeds import TWO_SPEEDS
 
 SHEET = Sheet(480.0, 300.0)
 MARGIN = 0.15
@@ -28,7 +29,7 @@ MARGIN = 0.15
 @pytest.fixture(scope="module")
 def case() -> Case:
     """Stated wave coefficients, so that level 1 needs no level 2; a sea margin and a shaft that takes its part."""
-    return load_case("dtc-p4119").replaced(
+    return load_case(TWO_SPEEDS).replaced(
         "constants",
         wave_calibration="stated",
         stated_wave_coefficients=(2.8e-4, 6.6e-4),
