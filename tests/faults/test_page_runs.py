@@ -90,7 +90,7 @@ def test_the_page_starts_though_the_newest_run_is_damaged(tmp_path: Path, finish
     path = folder / "newest.hpsop"
     shutil.copy(finished, path)
     damage(path)
-    opening = _chosen(None, folder)
+    opening = _chosen([], folder)
     assert opening.run == path, "its first look tells nothing"
     port = free_port("127.0.0.1", 8390)
     page = Explorer(opening.case, opening.run, port=port, folder=folder, workers=1, run_asked=False)

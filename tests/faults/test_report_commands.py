@@ -91,7 +91,7 @@ def test_reproduce_takes_runs_of_the_papers_case_alone(
     file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
     words = ["reproduce", "--to", str(tmp_path / "out"), "--run", str(file)]
-    assert "of the case 'dtc-p4119', not of 'dtc-p4119-paper'" in refused(words, capsys)
+    assert "of the case 'two-speeds', not of 'dtc-p4119-paper'" in refused(words, capsys)
     assert "leave --workers or --run away" in refused([*words, "--workers", "2"], capsys)
     changed = load_case("dtc-p4119-paper").replaced("constants", form_factor=0.094)
     altered = tmp_path / "altered.hpsop"

@@ -109,7 +109,8 @@ def _places(header: Line, source: str) -> dict[str, int]:
         InputError: one is missing or stands there twice.
     """
     found = [column_of(cell) for cell in header.cells]
-    has = set(found)
+    # an unknown name stands for no column at all
+    has = {column for column in found if column is not None}
     for column in COLUMNS:
         other = {"t_c": THICKNESS_TO_DIAMETER, "skew_deg": SKEW_RADIANS}.get(column)
         if column not in has and column not in _OPTIONAL and other not in has:
