@@ -9,7 +9,9 @@ import numpy as np
 from hpsop_core.case.case import KNOT
 from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.charts.axis import Axis, padded
+from hpsop_core.charts.frame import Key
 from hpsop_core.charts.looks import Look, Sheet
+from hpsop_core.charts.marks import smooth
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.propulsion import WAITING
 from hpsop_core.evaluation.power_curves import PowerCurves
@@ -17,7 +19,7 @@ from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.machinery.engine import Engine
 
 _PROFILE = 0.14
-"""Height of a share of the whole time, in parts of the chart's."""
+"""Height of the greatest share of time, in parts of the chart's."""
 
 
 def power_chart(
@@ -55,7 +57,9 @@ def power_chart(
             words = f"{look.name}, calm water"
             plot.line(knots, 1e-6 * curves.calm, f"{look.role} dot thin", name=words, key=words, curved=True)
             if main:
-                plot.band(knots, 1e-6 * curves.calm, 1e-6 * curves.service, look.role)
+                # as smooth as the lines that bound it
+                fine, low = smooth(knots, 1e-6 * curves.calm)
+                plot.band(fine, low, (1.0 + sea_margin) * low, look.role)
         for number, (condition, power) in enumerate(_known(evaluation)):
             at = condition.speed / KNOT
             title = f"{look.name}, {at:.4g} kn: {power:.2f} MW at {condition.rotation_rate_rpm:.1f} rpm"
@@ -76,12 +80,15 @@ def _known(evaluation: Evaluation) -> list[tuple[ConditionResult, float]]:
 def _profile(plot: Plot, look: Look, evaluation: Evaluation, top: float) -> None:
     """The share of time at each condition as a bar on the speed axis."""
     total = sum(condition.weight for condition in evaluation.conditions) or 1.0
+    greatest = max((condition.weight for condition in evaluation.conditions), default=1.0) / total or 1.0
     low, high = plot.x.limits
     half = 0.012 * (high - low)
     for condition in evaluation.conditions:
         at, share = condition.speed / KNOT, condition.weight / total
-        plot.rectangle(at - half, at + half, 0.0, _PROFILE * top * share, f"band {look.role}", "fill-opacity:.35")
-        plot.text(at + half, 0.0, f"{100.0 * share:.3g} % of time", "soft", dx=3, dy=-4)
+        height = _PROFILE * top * share / greatest
+        plot.rectangle(at - half, at + half, 0.0, height, f"band {look.role}", "fill-opacity:.35")
+        plot.text(at, height, f"{100.0 * share:.3g} %", "soft", "middle", dy=-3)
+    plot.keys.append(Key("band", look.role, "share of time"))
 
 
 def _gain(plot: Plot, look: Look, speed: float, power: float, first: Evaluation, number: int) -> None:

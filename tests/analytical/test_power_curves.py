@@ -96,7 +96,7 @@ def test_the_chart_tells_powers_profile_and_gain(designs: list[tuple[Look, Power
     svg = str(plot.svg("power"))
     weights = [condition.weight for condition in designs[1][2].conditions]
     for weight in weights:
-        assert f"{100.0 * weight / sum(weights):.3g} % of time" in svg
+        assert f"{100.0 * weight / sum(weights):.3g} %<" in svg
     for before, after in zip(designs[0][2].conditions, designs[1][2].conditions, strict=True):
         change = f"{100.0 * (after.brake_power / before.brake_power - 1.0):+.1f} %".replace("-", "−")
         assert change in svg
