@@ -182,8 +182,12 @@ class AppState:
         with self.lock:
             change(self.draft)
         if whole:
-            self.hub.changed("settings")
+            self.show_settings()
         self.tell_all("draft")
+
+    def show_settings(self) -> None:
+        """Widgets of the settings show the draft again: it was changed elsewhere, or what was typed was refused."""
+        self.hub.changed("settings")
 
 
 def another_ship(case: Case, other: Case) -> bool:

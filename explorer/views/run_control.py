@@ -80,7 +80,7 @@ class RunControl:
             raise InputError(f"{VARIABLE_TABLE[name].symbol}: {text[:20]!r} is no number; write one as 8.2") from None
         finally:
             # the slider follows the box, and a refused box its slider
-            self._app.hub.changed("settings")
+            self._app.show_settings()
 
     def _delete(self, name: str) -> None:
         if self._app.asked_to_delete != name:

@@ -17,8 +17,9 @@ from hpsop_core.hydro.rankine.solver import solve
 from hpsop_core.runs.controller import optimize
 from hpsop_core.runs.reader import open_run
 from hpsop_core.runs.refinement import refine_front
+from tests.two_speeds import TWO_SPEEDS
 
-CASE = load_case("dtc-p4119")
+CASE = load_case(TWO_SPEEDS)
 
 
 @pytest.fixture(scope="module")

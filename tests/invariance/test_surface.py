@@ -13,6 +13,7 @@ from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.reference import Reference, learnt, reference_for
 from hpsop_core.evaluation.result import Ok
 from hpsop_core.optimization.sampling import latin_hypercube
+from tests.two_speeds import TWO_SPEEDS
 
 
 def designs(case: Case, count: int, seed: int) -> list[DesignVariables]:
@@ -31,7 +32,7 @@ def _block_coefficient(case: Case, variables: DesignVariables) -> float:
 
 @pytest.fixture(scope="module")
 def case() -> Case:
-    plain = load_case("dtc-p4119")
+    plain = load_case(TWO_SPEEDS)
     bounds = {"buoyancy_centre_shift": (-0.01, 0.01), "expanded_area_ratio": (0.55, 0.9), "draft": (13.5, 14.5)}
     return plain.with_bounds(bounds)
 

@@ -135,7 +135,7 @@ def test_no_second_declaration_stands_anywhere() -> None:
 
 
 def test_the_page_sets_usual_bounds_around_a_changed_initial_design() -> None:
-    draft = Draft(load_case("dtc-p4119-power"))
+    draft = Draft(load_case(TWO_SPEEDS).with_bounds({"expanded_area_ratio": (0.55, 1.0)}))
     for name, value in (("length", 6.0), ("breadth", 0.86), ("draft", 0.25), ("diameter", 0.15)):
         draft.set("initial", name, value)
     draft.search_around_initial()

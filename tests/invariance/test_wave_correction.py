@@ -14,8 +14,9 @@ from hpsop_core.evaluation.curves import resistance_curve
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Ok
+from tests.two_speeds import TWO_SPEEDS
 
-CASE = load_case("dtc-p4119").replaced("constants", wave_calibration="learnt")
+CASE = load_case(TWO_SPEEDS).replaced("constants", wave_calibration="learnt")
 
 
 @pytest.fixture(scope="module")

@@ -23,6 +23,7 @@ from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.optimization.decision import normalised
 from hpsop_core.runs.controller import front_designs
 from hpsop_core.runs.reader import RunReader
+from tests.two_speeds import TWO_SPEEDS
 
 PAPER = "dtc-p4119-paper"
 SALT, FRESH = (1025.0, 1.188e-6), (999.1, 1.1386e-6)
@@ -70,7 +71,7 @@ def test_the_waters_are_ittcs() -> None:
 
 @pytest.mark.parametrize("factor", ["0", "0.12", "0.3"])
 def test_the_form_factor_is_on_the_friction_alone(factor: str, capsys: pytest.CaptureFixture[str]) -> None:
-    document = answer(capsys, "resistance", "dtc-p4119-power", "--set", "constants.wave_calibration=none",
+    document = answer(capsys, "resistance", TWO_SPEEDS, "--set", "constants.wave_calibration=none",
                       "--froude", "0.2,0.26", "--form-factor", factor)  # fmt: skip
     for point in document["points"]:
         form = float(factor) * point["friction_resistance"]
