@@ -49,7 +49,7 @@ def _pump(source: socket.socket, sink: socket.socket, change: Callable[[bytes], 
 @pytest.fixture
 def page(chromium: Browser) -> Iterator[Page]:
     """A browser that was never here before."""
-    context = chromium.new_context(viewport={"width": 1200, "height": 700})
+    context = chromium.new_context(viewport={"width": 1366, "height": 768})
     fresh = context.new_page()
     fresh.set_default_timeout(PATIENCE)
     yield fresh

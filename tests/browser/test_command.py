@@ -55,7 +55,7 @@ def folder(tmp_path_factory):
 def writer(folder):
     """Another process that writes a run, slowly enough to be watched."""
     case = folder / "small.toml"
-    case.write_text(small_case(generations=400, level1_generations=400, population=6).to_toml(), encoding="utf-8")
+    case.write_text(small_case(generations=5000, level1_generations=5000, population=6).to_toml(), encoding="utf-8")
     run = folder / "watched.hpsop"
     process = subprocess.Popen(
         [BIN / "hpsop", "optimize", case, "--run", run, "--workers", "1"],
@@ -92,7 +92,7 @@ def generation(page) -> int:
 def page(chromium, command, writer):
     line = command.start(str(writer.run))
     assert line.startswith(f"hpsop explorer: http://127.0.0.1:{command.port}/?token=")
-    context = chromium.new_context(viewport={"width": 1200, "height": 700})
+    context = chromium.new_context(viewport={"width": 1366, "height": 768})
     opened = context.new_page()
     opened.set_default_timeout(PATIENCE)
     opened.goto(command.address)
