@@ -5,11 +5,15 @@ And lets no test call out of the machine.
 
 from __future__ import annotations
 
+import sys
 from collections.abc import Iterator
 from pathlib import Path
 
 import no_calls_out
 import pytest
+
+# What tests share is `tests.…`. At the end: an installed hpsop stays the one under test with the oldest versions.
+sys.path.append(str(Path(__file__).resolve().parents[1]))
 
 OLDEST = {
     "analytical/test_blade_panels_kernels.py": "numba",
