@@ -41,6 +41,7 @@ CAMERA = {
 
 @pytest.fixture(scope="module")
 def explorer(tmp_path_factory: pytest.TempPathFactory) -> Any:
+    _OTHERS.update(threading.enumerate())
     # stated waves: the initial design then needs level 1 alone
     case = load_case(TWO_SPEEDS).replaced(
         "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
@@ -64,13 +65,18 @@ def _wait(condition: Callable[[], object], what: str, seconds: float = 90.0) -> 
         time.sleep(0.05)
 
 
-def _sessions_alive() -> int:
+def _sessions_alive(explorer: Explorer) -> int:
     gc.collect()
-    return sum(isinstance(item, Session) for item in gc.get_objects())
+    return sum(isinstance(item, Session) and item.app is explorer.state for item in gc.get_objects())
+
+
+# Threads that other tests of the same process have left: not of these browsers.
+_OTHERS: set[threading.Thread] = set()
 
 
 def _own_threads() -> int:
-    return sum(thread.name.startswith(("page-", "scene-", "maps-")) for thread in threading.enumerate())
+    own = set(threading.enumerate()) - _OTHERS
+    return sum(thread.name.startswith(("page-", "scene-", "maps-")) for thread in own)
 
 
 def _vanish(explorer: Explorer, count: int) -> None:
@@ -79,7 +85,9 @@ def _vanish(explorer: Explorer, count: int) -> None:
     _wait(lambda: not explorer.server.get_clients(), "the server to notice")
     _wait(lambda: not explorer.state.sessions, "every session to end")
     _wait(lambda: _own_threads() == 0, f"{_own_threads()} threads of browsers that have left")
-    _wait(lambda: _sessions_alive() == 0, f"{_sessions_alive()} sessions of browsers that have left", 20.0)
+    _wait(
+        lambda: _sessions_alive(explorer) == 0, f"{_sessions_alive(explorer)} sessions of browsers that have left", 20.0
+    )
 
 
 def test_browsers_that_vanish_while_connecting_leave_nothing(explorer: Explorer) -> None:
