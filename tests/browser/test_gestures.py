@@ -331,7 +331,7 @@ def test_bounds_and_refused_values(page, session, explorer):
         settings.set_field("optimization", "population", math.nan)
     assert draft.value("bounds", "draft") == (low, high)
     settings.set_bounds("draft", (14.1, 14.4))
-    page.wait_for_selector('[data-variable="draft"]:has-text("14.1")')
+    page.wait_for_function("() => [...document.querySelectorAll('input')].some(box => box.value.startsWith('14.1'))")
     settings.set_bounds("draft", (low, high))
 
 

@@ -14,7 +14,7 @@ from explorer.server.security import free_port
 @pytest.fixture(scope="module")
 def explorer(tmp_path_factory):
     page = Explorer(
-        small_case(generations=60, level1_generations=60, population=6),
+        small_case(generations=5000, level1_generations=5000, population=6),
         port=free_port("127.0.0.1", 8260),
         folder=tmp_path_factory.mktemp("runs"),
         workers=1,
