@@ -35,9 +35,7 @@ def small_case(**settings: Any) -> Case:
     case = load_case(TWO_SPEEDS).replaced(
         "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
     )
-    return case.replaced(
-        "optimization", **{"population": 8, "generations": 2000, "level1_generations": 2000, **settings}
-    )
+    return case.replaced("optimization", **{"population": 8, "generations": 40, "level1_generations": 40, **settings})
 
 
 @pytest.fixture(scope="session")
