@@ -31,7 +31,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 
 def small_case(**settings: Any) -> Case:
-    """The recommended case with a small search at level 1; the waves stated, so that level 2 is not needed."""
+    """Two speeds with a small search at level 1; the waves stated, so that level 2 is not needed."""
     case = load_case(TWO_SPEEDS).replaced(
         "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
     )
