@@ -11,7 +11,7 @@ LIST = constraints/$(shell $(BIN)/python -c 'import sys, sysconfig; print(f"cp{s
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
 
-.PHONY: explore test test-core test-oldest lint soak faults benchmark pictures chromium lock clean
+.PHONY: explore test test-core test-oldest lint soak faults benchmark docs pictures chromium lock clean
 
 explore: $(VENV)/installed
 	$(BIN)/hpsop-explore $(ARGS)
@@ -42,6 +42,10 @@ faults: $(VENV)/installed-for-tests
 benchmark: $(VENV)/installed-for-tests
 	for script in benchmarks/bench_*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
 
+# The documentation as a site in site/; nothing is fetched while it is built. To read it: python -m http.server -d site
+docs: $(VENV)/installed-for-docs
+	NO_MKDOCS_2_WARNING=1 $(BIN)/python -m mkdocs build --strict
+
 # Every picture of the docs, anew.
 pictures: $(VENV)/installed-for-tests chromium
 	for what in hull own_files propeller rankine blade_panels; do \
@@ -68,6 +72,12 @@ $(VENV)/installed-for-tests: $(VENV)/bin/python pyproject.toml constraints.txt $
 	else $(PIP) --constraint constraints.txt --editable '.[test]'; fi
 	@touch $@ $(VENV)/installed
 
+$(VENV)/installed-for-docs: $(VENV)/bin/python pyproject.toml constraints.txt $(wildcard constraints/*.txt)
+	@if [ -f $(LIST)-docs.txt ]; then \
+		$(PIP) --require-hashes --requirement $(LIST)-docs.txt && $(PIP) --no-deps --no-build-isolation --editable .; \
+	else $(PIP) --constraint constraints.txt --editable '.[docs]'; fi
+	@touch $@ $(VENV)/installed
+
 # After constraints.txt was changed: the hashes of the files that this Python and machine take.
 lock: $(VENV)/bin/python
 	$(BIN)/python -m tools.lock
@@ -85,4 +95,4 @@ $(OLDEST)/installed: $(OLDEST)/bin/python pyproject.toml constraints-oldest.txt 
 	@touch $@
 
 clean:
-	rm -rf $(VENV) $(OLDEST) build *.egg-info .mypy_cache .ruff_cache .pytest_cache
+	rm -rf $(VENV) $(OLDEST) build site *.egg-info .mypy_cache .ruff_cache .pytest_cache

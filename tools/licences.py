@@ -24,8 +24,8 @@ NOT_PERMISSIVE = re.compile(r"GPL|MPL|Mozilla|EPL|CDDL", re.IGNORECASE)
 
 _HEAD = """# Licences
 
-hpsop itself is MIT. This lists what `pip install .` brings along (`dask`, `cad` and `test` are extras, not in it); it
-is written by `python -m tools.licences`.
+hpsop itself is MIT. This lists what `pip install .` brings along (`dask`, `cad`, `docs` and `test` are extras, not
+in it); it is written by `python -m tools.licences`.
 
 Nothing of these packages is copied into hpsop or shipped with it: pip fetches each from its own project, and hpsop
 imports it. Those that ask for more than to be named:

@@ -1,4 +1,4 @@
-"""Pins with hashes for this Python and machine: constraints/<python>-<machine>.txt and ...-tests.txt.
+"""Pins with hashes for this Python and machine: constraints/<python>-<machine>.txt, ...-tests.txt and ...-docs.txt.
 
 `make lock` runs it after constraints.txt was changed. pip resolves what `pip install .` (and '.[test]') would take
 under constraints.txt, and says the hash of every file; `make` installs those files and nothing else wherever such a
@@ -59,6 +59,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     # setuptools builds hpsop itself: from the list too, and not from wherever a build would fetch it
     write(FOLDER / f"{name_here()}.txt", resolved([".", "setuptools>=77"]), "what hpsop needs")
     write(FOLDER / f"{name_here()}-tests.txt", resolved([".[test]", "setuptools>=77"]), "what hpsop and its tests need")
+    write(FOLDER / f"{name_here()}-docs.txt", resolved([".[docs]", "setuptools>=77"]), "what hpsop and its site need")
     return 0
 
 
