@@ -3,10 +3,8 @@
 from __future__ import annotations
 
 import contextlib
-import os
 import pickle
 import subprocess
-import sys
 import tempfile
 import threading
 import time
@@ -19,10 +17,10 @@ from explorer.server.uploads import LARGEST_FILE, shown_name
 from explorer.services.reading_job import Answer, HullJob, PropellerJob, Refused
 from explorer.services.reading_process import READY
 from hpsop_core.errors import InputError
+from hpsop_core.geometry.foreign.apart import own_python
 from hpsop_core.geometry.hull.input import ReadOptions
-from hpsop_core.geometry.hull.input.cad import SUFFIXES as CAD_SUFFIXES
 from hpsop_core.geometry.hull.input.mesh import SUFFIXES as MESH_SUFFIXES
-from hpsop_core.geometry.hull.input.rhino import SUFFIXES as RHINO_SUFFIXES
+from hpsop_core.geometry.hull.input.surfaces import SUFFIXES as SURFACE_SUFFIXES
 
 LONGEST_SECONDS = 60.0
 MOST_MEMORY = 2 * 2**30
@@ -31,10 +29,9 @@ _LOOK_SECONDS = 0.05
 # a reading that nobody waits for any more is given so long to end by itself before its process is ended
 _GRACE_SECONDS = 3.0
 _LARGEST_ANSWER = 256 * 2**20
-_KINDS = (*MESH_SUFFIXES, *RHINO_SUFFIXES, *CAD_SUFFIXES)
+_KINDS = (*MESH_SUFFIXES, *SURFACE_SUFFIXES)
 # A hull file by its ending; others are opened with the word "hull" before them.
 HULL_SUFFIXES = (*_KINDS, ".csv", ".txt", ".dat", ".tsv")
-_ONE_THREAD = dict.fromkeys(("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS"), "1")
 
 
 def kind_of(name: str) -> str:
@@ -155,17 +152,15 @@ class ReadingProcess:
             return self._connection
         self._end()
         ours, theirs = Pipe()
-        # The tree that this code stands in, wherever it was started from.
-        root = str(Path(__file__).resolve().parents[2])
-        paths = [root, *filter(None, os.environ.get("PYTHONPATH", "").split(os.pathsep))]
         handle = theirs.fileno()
+        command, environment = own_python("explorer.services.reading_process")
         self._process = subprocess.Popen(
-            [sys.executable, "-P", "-m", "explorer.services.reading_process", str(handle), str(self._memory)],
+            [*command, str(handle), str(self._memory)],
             pass_fds=(handle,),
             stdin=subprocess.DEVNULL,
             stdout=subprocess.DEVNULL,
             stderr=subprocess.DEVNULL,
-            env={**os.environ, **_ONE_THREAD, "PYTHONPATH": os.pathsep.join(paths)},
+            env=environment,
         )
         theirs.close()
         self._connection = ours

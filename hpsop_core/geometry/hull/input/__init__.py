@@ -3,7 +3,7 @@
 delimited text     ../../delimited_text (shared with propellers)
 options            what a user states (Axes, ReadOptions); what every table reader gives (FileTable)
 tables             columns (names in use) · cells (numbers, units) · long_table · matrix_table -> ship_table
-meshes, surfaces   mesh (STL OBJ PLY OFF GLB) · rhino (3dm) · cad (STEP, IGES) -> triangles (ship axes) -> slices
+meshes, surfaces   mesh (STL OBJ PLY OFF GLB) · surfaces (3dm STEP IGES) -> triangles (ship axes) -> slices
 after reading      checks (the table) · surface_checks (the fitted surface) · understood (what is told)
 and then           normalised (the table as text that needs no understanding) · deviations (reading by reading)
 door               read_hull: all of it

@@ -11,7 +11,7 @@ from hpsop_core.errors import InputError
 from hpsop_core.geometry.delimited_text import TextTable, read_text_table, text_table
 from hpsop_core.geometry.hull.fit_table import SHAFT_HEIGHT_TO_DRAFT, parent_from_table
 from hpsop_core.geometry.hull.hull import Hull, ParentHull
-from hpsop_core.geometry.hull.input import cad, mesh, rhino, triangles
+from hpsop_core.geometry.hull.input import mesh, surfaces, triangles
 from hpsop_core.geometry.hull.input.checks import check_counts, check_points, check_size
 from hpsop_core.geometry.hull.input.long_table import COLUMNS, is_long_form, read_long_table
 from hpsop_core.geometry.hull.input.matrix_table import is_matrix, read_matrix_table
@@ -25,8 +25,7 @@ from hpsop_core.reading import LARGEST_MESH, check_regular
 
 _READERS = {
     **dict.fromkeys(mesh.SUFFIXES, mesh.read_mesh),
-    **dict.fromkeys(rhino.SUFFIXES, rhino.read_rhino),
-    **dict.fromkeys(cad.SUFFIXES, cad.read_cad),
+    **dict.fromkeys(surfaces.SUFFIXES, surfaces.read_surfaces),
 }
 
 

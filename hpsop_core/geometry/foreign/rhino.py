@@ -10,11 +10,9 @@ from typing import Any
 import numpy as np
 
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.hull.input.mesh import tidied
-from hpsop_core.geometry.hull.input.triangles import TriangleFile
+from hpsop_core.geometry.foreign.loose import LooseTriangles
 from hpsop_core.typing_aliases import Array, IntArray
 
-SUFFIXES = (".3dm",)
 # What is no hull, by the name of its object or layer.
 _APPENDAGES = re.compile(
     r"propeller|screw|rudder|strut|bracket|shaft(?!t)|bilge keel|thruster|appendage", re.IGNORECASE
@@ -23,7 +21,7 @@ _APPENDAGES = re.compile(
 POINTS_PER_SPAN, MOST_POINTS = 4, 400
 
 
-def read_rhino(path: Path) -> TriangleFile:
+def read_3dm(path: Path) -> LooseTriangles:
     """The hull's surfaces, polysurfaces, extrusions and meshes, as triangles.
 
     Trimmed faces are taken with their own render mesh where the file has one, else whole.
@@ -57,7 +55,7 @@ def read_rhino(path: Path) -> TriangleFile:
     start = np.cumsum([0, *(len(vertices) for vertices, _ in pieces)])[:-1]
     vertices = np.concatenate([vertices for vertices, _ in pieces])
     faces = np.concatenate([faces + first for (_, faces), first in zip(pieces, start, strict=True)])
-    vertices, faces, notes = tidied(vertices, faces)
+    notes: tuple[str, ...] = ()
     if left_out:
         notes = (*notes, f"left out by the names of their objects or layers: {', '.join(sorted(left_out))}")
     if whole_trimmed:
@@ -65,7 +63,7 @@ def read_rhino(path: Path) -> TriangleFile:
     unit = {"Millimeters": "mm", "Centimeters": "cm", "Meters": "m", "Feet": "ft", "Inches": "in"}.get(
         str(file.Settings.ModelUnitSystem).rsplit(".", 1)[-1]
     )
-    return TriangleFile(path.name, f"3dm file with {len(pieces)} surfaces", vertices, faces, unit, False, notes)
+    return LooseTriangles(f"3dm file with {len(pieces)} surfaces", vertices, faces, unit, notes)
 
 
 def _triangles(geometry: Any) -> tuple[list[tuple[Array, IntArray]], int]:

@@ -8,17 +8,15 @@ from typing import Any
 import numpy as np
 
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.hull.input.mesh import tidied
-from hpsop_core.geometry.hull.input.triangles import TriangleFile
+from hpsop_core.geometry.foreign.loose import LooseTriangles
 from hpsop_core.typing_aliases import Array, IntArray
 
-STEP, IGES = (".step", ".stp"), (".igs", ".iges")
-SUFFIXES = STEP + IGES
+_STEP = (".step", ".stp")
 # Largest distance of the triangles from the surfaces as a part of the size, and their largest turn, rad.
 DEFLECTION, TURN = 1e-4, 0.2
 
 
-def read_cad(path: Path) -> TriangleFile:
+def read_step_or_iges(path: Path) -> LooseTriangles:
     """The faces of a STEP or IGES file as triangles, in millimetres (Open CASCADE converts what the file states).
 
     Raises:
@@ -39,22 +37,21 @@ def read_cad(path: Path) -> TriangleFile:
     messenger = Message.DefaultMessenger_s()
     for printer in list(messenger.Printers()):
         messenger.RemovePrinter(printer)
-    reader: Any = STEPControl_Reader() if path.suffix.lower() in STEP else IGESControl_Reader()
+    reader: Any = STEPControl_Reader() if path.suffix.lower() in _STEP else IGESControl_Reader()
     if not path.is_file() or reader.ReadFile(str(path)) != IFSelect_RetDone:
         raise InputError(f"{path.name}: cannot be read as a {path.suffix[1:].upper()} file")
     reader.TransferRoots()
     shape: Any = reader.OneShape()
-    if shape.IsNull():
+    size = 0.0 if shape.IsNull() else _size(shape)
+    if not 0.0 < size < np.inf:
         raise InputError(f"{path.name}: holds no shape; save the hull's surfaces into it")
-    BRepMesh_IncrementalMesh(shape, DEFLECTION * _size(shape), False, TURN, True)
+    BRepMesh_IncrementalMesh(shape, DEFLECTION * size, False, TURN, True)
     vertices, faces, count = _triangles(shape)
     if len(faces) == 0:
         raise InputError(
             f"{path.name}: holds no surfaces (curves alone cannot be read); save the hull's surfaces into it"
         )
-    vertices, faces, notes = tidied(vertices, faces)
-    layout = f"{path.suffix[1:].upper()} file with {count} faces"
-    return TriangleFile(path.name, layout, vertices, faces, "mm", False, notes)
+    return LooseTriangles(f"{path.suffix[1:].upper()} file with {count} faces", vertices, faces, "mm")
 
 
 def _size(shape: Any) -> float:
@@ -63,6 +60,8 @@ def _size(shape: Any) -> float:
 
     box = Bnd_Box()
     BRepBndLib.Add_s(shape, box)
+    if box.IsVoid():
+        return 0.0
     low, high = box.CornerMin(), box.CornerMax()
     return float(max(high.X() - low.X(), high.Y() - low.Y(), high.Z() - low.Z()))
 
