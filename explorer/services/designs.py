@@ -26,6 +26,10 @@ from hpsop_core.geometry.hull.lines import HullLine
 class DesignSource(Protocol):
     """Where the designs of a run are read from."""
 
+    @property
+    def opening(self) -> int:
+        """Which opening of the run (``RunPicture.opening``)."""
+
     def evaluation(self, design_id: int) -> Evaluation | None:
         """A design's numbers."""
 
@@ -64,20 +68,23 @@ class Designs:
         evaluation = source.evaluation(design_id) if source is not None else None
         if evaluation is None:
             return None
+        opening = source.opening if source is not None else 0
         picture = self._display.picture
-        row = picture.row(design_id)
+        # the picture may still be, or be again, that of another run
+        row = picture.row(design_id) if picture.opening == opening else None
         generation = int(picture.generation[row]) if row is not None else None
         hand = row is not None and bool(picture.by_hand[row])
         label = f"Design {design_id}" + (" (by hand)" if hand else "")
-        return Shown(label, evaluation, design_id, generation)
+        return Shown(label, evaluation, design_id, generation, opening=opening)
 
     def initial(self, level: int) -> Shown:
         """The initial design at a level: from the run where it has it, else computed."""
-        case, source = self.case, self._source
-        evaluation = source.initial(level) if source is not None else None
+        picture, source = self._display.picture, self._source
+        case = picture.case
+        evaluation = source.initial(level) if source is not None and source.opening == picture.opening else None
         if evaluation is None or evaluation.variables != case.initial.variables:
             evaluation = self._answers.initial(case, level)
-        return Shown("Initial design", evaluation, kind="initial")
+        return Shown("Initial design", evaluation, kind="initial", opening=picture.opening)
 
     def first(self) -> Shown:
         """The initial design at the level that the run has reached."""
@@ -91,7 +98,9 @@ class Designs:
 
     def whatif(self, variables: DesignVariables, level: int = 1) -> Shown:
         """A design of the user's own making, evaluated now."""
-        return Shown("What-if", self._answers.evaluate(self.case, variables, level), kind="whatif")
+        picture = self._display.picture
+        evaluation = self._answers.evaluate(picture.case, variables, level)
+        return Shown("What-if", evaluation, kind="whatif", opening=picture.opening)
 
     def again(self, saved: object) -> Shown | None:
         """The design that ``Shown.saved`` described, or None where it no longer exists."""

@@ -7,6 +7,8 @@ picture is made on the shared worker, at most a few times a second, from what is
 from __future__ import annotations
 
 import dataclasses
+import itertools
+import os
 import threading
 from collections.abc import Callable
 from pathlib import Path
@@ -45,6 +47,7 @@ _STATES = {
     "interrupted": STOPPED,
 }
 _POLL_SECONDS = 0.7
+_openings = itertools.count(1)
 
 
 class RunKeeper:
@@ -52,9 +55,13 @@ class RunKeeper:
 
     Args:
         path: the file.
+        on_news: called (from any thread) when ``picture`` would tell something new.
         case, workers: given for a new run.
         read_only: never drive it (the shipped demonstration).
-        on_news: called (from any thread) when ``picture`` would tell something new.
+        before: the one that was on display; where it had the same file open, the run on display stays the same.
+
+    Attributes:
+        opening: which opening of a run this is (``RunPicture.opening``).
     """
 
     def __init__(
@@ -64,6 +71,7 @@ class RunKeeper:
         case: Case | None = None,
         workers: int | None = None,
         read_only: bool = False,
+        before: RunKeeper | None = None,
     ) -> None:
         self.path = path
         self._on_news = on_news
@@ -92,6 +100,9 @@ class RunKeeper:
         else:
             self._controller = RunController(path, case, workers=workers)
             self._controller.subscribe(self._on_event)
+        self._file = _identity(path)
+        same = before is not None and self._file is not None and before._file == self._file
+        self.opening = before.opening if before is not None and same else next(_openings)
         self._watcher = threading.Thread(target=self._watch, name="run-watch", daemon=True)
         self._watcher.start()
 
@@ -307,7 +318,7 @@ class RunKeeper:
         driven = self.driven
         status, message = self._status(reader, driven)
         if reader is None:
-            return RunPicture(self.path.name, case, status, message, driven)
+            return RunPicture(self.path.name, case, status, message, driven, opening=self.opening)
         generations = tuple(
             GenerationPicture(item.number, item.level, item.members, item.front, item.hypervolume)
             for item in reader.generations()
@@ -340,6 +351,7 @@ class RunKeeper:
             seconds_left=snapshot.seconds_left if snapshot is not None else None,
             elapsed=elapsed,
             predictions=self._predictions,
+            opening=self.opening,
         )
         return self._picture
 
@@ -407,3 +419,12 @@ class RunKeeper:
             # it is this program that holds the file: the run begins or has just ended, and nobody else drives it
             return STOPPED, reason
         return _STATES.get(state, state), reason or self._shape
+
+
+def _identity(path: Path) -> tuple[int, int] | None:
+    """Which file stands there, whatever it is called; a new one in its place is another one."""
+    try:
+        status = os.stat(path)
+    except OSError:
+        return None
+    return status.st_dev, status.st_ino

@@ -46,11 +46,12 @@ class Runs:
         Raises:
             InputError: there is no run that can be written.
         """
-        keeper = self._keeper
-        if keeper is None:
-            raise InputError("there is no run yet; press Start first")
-        design_id = keeper.add_by_hand(evaluation)
-        self._display.show_run(keeper.picture(), self._designs.first)
+        with self._guard:
+            keeper = self._keeper
+            if keeper is None:
+                raise InputError("there is no run yet; press Start first")
+            design_id = keeper.add_by_hand(evaluation)
+            self._display.show_run(keeper.picture(), self._designs.first)
         return design_id
 
     def can_add_by_hand(self) -> bool:
@@ -70,7 +71,7 @@ class Runs:
             if not case.bounds.free:
                 raise InputError("bounds: every variable is fixed; give at least one a range")
             path = self._library.new_path(case.name)
-            keeper = RunKeeper(path, self.news, case, self._workers)
+            keeper = RunKeeper(path, self.news, case, self._workers, before=self._keeper)
             self._show(keeper)
             keeper.start()
 
@@ -83,7 +84,7 @@ class Runs:
         with self._guard:
             if self._keeper is not None and self._keeper.driven and self._keeper.path != path:
                 raise InputError("a run is under way; stop it before you open another")
-            self._show(RunKeeper(path, self.news, workers=self._workers, read_only=read_only))
+            self._show(RunKeeper(path, self.news, None, self._workers, read_only, before=self._keeper))
 
     def open_named(self, name: str) -> None:
         """Show a run of the library.
@@ -130,11 +131,13 @@ class Runs:
         if pause > 0.0:
             time.sleep(pause)
         self._refreshed = time.monotonic()
-        keeper = self._keeper
-        if keeper is None:
-            return
-        picture = keeper.picture()
-        self._display.show_run(picture, self._designs.first)
+        # Under the guard: between a run's picture and its display no other run must come on display.
+        with self._guard:
+            keeper = self._keeper
+            if keeper is None:
+                return
+            picture = keeper.picture()
+            self._display.show_run(picture, self._designs.first)
         # the library says what may be deleted and continued: that changes too when the file is given back
         standing = (picture.name, picture.status, keeper.holds_file)
         if standing != self._standing:
@@ -143,14 +146,15 @@ class Runs:
 
     def draft_changed(self) -> None:
         """While no run is on display, the page shows the case as it is being set up."""
-        if self._keeper is not None:
-            return
-        try:
-            case = self._display.drafted()
-        except InputError:
-            return
-        if case != self._display.picture.case:
-            self._display.show_run(RunPicture("", case), self._designs.first)
+        with self._guard:
+            if self._keeper is not None:
+                return
+            try:
+                case = self._display.drafted()
+            except InputError:
+                return
+            if case != self._display.picture.case:
+                self._display.show_run(RunPicture("", case), self._designs.first)
 
     def close_run(self) -> None:
         """Back to the set-up, with no run on display.
@@ -165,7 +169,7 @@ class Runs:
                 self._keeper.close()
             self._keeper = None
             self._designs.read_from(None)
-        self._display.show_run(RunPicture("", self._display.drafted()), self._designs.first)
+            self._display.show_run(RunPicture("", self._display.drafted()), self._designs.first)
 
     def control(self, what: str) -> None:
         """pause, resume, stop or continue.

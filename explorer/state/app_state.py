@@ -130,7 +130,9 @@ class AppState:
         """
         with self.lock:
             before = self.picture
-            replaced = picture.name != before.name or (not picture.name and another_ship(picture.case, before.case))
+            replaced = (picture.opening, picture.name) != (before.opening, before.name) or (
+                not picture.name and another_ship(picture.case, before.case)
+            )
             self.picture = picture
             watchers = list(self.sessions.values())
         self.hub.changed("run")

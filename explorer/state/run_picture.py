@@ -40,6 +40,7 @@ class RunPicture:
 
     Attributes:
         name: the run file's name, or "" before the first run.
+        opening: which opening of which file, from 1; 0 before the first run. Two runs may bear one name.
         case: what it runs.
         status: one of the words above.
         message: why it failed or ended, for people.
@@ -76,6 +77,7 @@ class RunPicture:
     seconds_left: float | None = None
     elapsed: float = 0.0
     predictions: int = 0
+    opening: int = 0
 
     def __post_init__(self) -> None:
         """One consistent picture: as many of everything as there are designs, a column of the table for each key.

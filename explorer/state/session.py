@@ -39,8 +39,6 @@ class Session:
         app: the shared state.
         browser: the browser's own name for itself, "" until it has said so.
         number: by which the other browsers know it, from 1; 0 until it has said who it is.
-        selected: the design on display, or None before the first.
-        pins: designs kept side by side, at most four.
         scrubbed: the generation looked at, or None to follow the run.
         playing: whether the generations are being played.
         filters: ranges by quantity key, from brushes and boxes.
@@ -62,8 +60,8 @@ class Session:
         self.notify = notify
         self.browser = ""
         self.number = 0
-        self.selected: Shown | None = None
-        self.pins: tuple[Shown, ...] = ()
+        self._selected: Shown | None = None
+        self._pins: tuple[Shown, ...] = ()
         self.scrubbed: int | None = None
         self.playing = False
         self.filters: dict[str, tuple[float, float]] = {}
@@ -92,6 +90,20 @@ class Session:
     def picture(self) -> RunPicture:
         """The run as it is now."""
         return self.app.picture
+
+    @property
+    def selected(self) -> Shown | None:
+        """The design on display; never one of a run that is no longer on display itself."""
+        shown = self._selected
+        return shown if shown is not None and self._belongs(shown) else None
+
+    @property
+    def pins(self) -> tuple[Shown, ...]:
+        """Designs kept side by side, all of the run on display."""
+        return tuple(shown for shown in self._pins if self._belongs(shown))
+
+    def _belongs(self, shown: Shown) -> bool:
+        return shown.opening == self.picture.opening
 
     @property
     def stars(self) -> frozenset[int]:
@@ -145,19 +157,26 @@ class Session:
             self.hub.changed("size")
 
     def select(self, shown: Shown) -> None:
-        """Put a design on display."""
-        self.selected = shown
+        """Put a design on display, unless another run has come on display since it was looked up."""
+        with self.app.lock:
+            if not self._belongs(shown):
+                return
+            self._selected = shown
         self._changed("selection")
 
     def pin(self, shown: Shown) -> None:
         """Keep a design side by side, or drop it when it is kept already."""
-        if any(item.key == shown.key for item in self.pins):
-            self.pins = tuple(item for item in self.pins if item.key != shown.key)
-        elif len(self.pins) >= MOST_PINS:
+        with self.app.lock:
+            if not self._belongs(shown):
+                return
+            pins = self.pins
+            without = tuple(item for item in pins if item.key != shown.key)
+            full = len(without) == len(pins) >= MOST_PINS
+            if not full:
+                self._pins = without if len(without) < len(pins) else (*pins, shown)
+        if full:
             self.notify("Four designs are pinned", "Unpin one of them first.", "yellow")
             return
-        else:
-            self.pins = (*self.pins, shown)
         self._changed("pins")
 
     def scrub(self, generation: int | None) -> None:
@@ -218,11 +237,12 @@ class Session:
 
     def star(self, design_id: int) -> None:
         """Give a design of the run on display a star, or take it back."""
-        stars = self.stars ^ {design_id}
+        run = self.picture.name
+        stars = self._stars.get(run, frozenset()) ^ {design_id}
         if len(stars) > _MOST_STARS:
             self.notify("No more stars", f"{_MOST_STARS} designs bear one already; take some back.", "yellow")
             return
-        self._stars[self.picture.name] = stars
+        self._stars[run] = stars
         self._changed("stars")
 
     def set_legend(self, overlay: str, legend: Markup | None) -> None:
@@ -239,12 +259,13 @@ class Session:
 
     def leave_run(self, first: Shown | None) -> None:
         """Another run is on display: forget what belonged to the one before and show this design."""
-        self.scrubbed = None
-        self.filters = {}
-        self.limits = {}
-        self.pins = ()
-        self.table = dataclasses.replace(self.table, page=0)
-        self.selected = first
+        with self.app.lock:
+            self.scrubbed = None
+            self.filters = {}
+            self.limits = {}
+            self.table = dataclasses.replace(self.table, page=0)
+            self._pins = ()
+            self._selected = first
         self.hub.changed("run", "selection", "scrub", "filter", "pins")
 
     def _changed(self, topic: str) -> None:
@@ -259,10 +280,11 @@ class Session:
 
     def saved(self) -> dict[str, Any]:
         """What a reload brings back, as JSON."""
+        selected = self.selected
         return {
             "number": self.number,
             "run": self.picture.name,
-            "selected": self.selected.saved() if self.selected else None,
+            "selected": selected.saved() if selected is not None else None,
             "pins": [item.saved() for item in self.pins],
             "scrubbed": self.scrubbed,
             "tab": self.tab,
@@ -294,6 +316,6 @@ class Session:
             self.scrubbed = scrubbed if isinstance(scrubbed, int) and not isinstance(scrubbed, bool) else None
             pins = saved.get("pins")
             again = [find(item) for item in pins[:MOST_PINS]] if isinstance(pins, list) else []
-            self.pins = tuple(shown for shown in again if shown is not None)
-            self.selected = find(saved.get("selected")) or self.selected
+            self._pins = tuple(shown for shown in again if shown is not None)
+            self._selected = find(saved.get("selected")) or self._selected
         self.hub.changed("selection", "pins", "scrub", "options", "tab", "layers", "table", "stars")

@@ -18,6 +18,7 @@ class Shown:
         design_id: in the run, or None.
         generation: it was born in, or None.
         kind: "run", "initial" or "whatif".
+        opening: of the run that it belongs to (``RunPicture.opening``).
     """
 
     label: str
@@ -25,6 +26,7 @@ class Shown:
     design_id: int | None = None
     generation: int | None = None
     kind: str = "run"
+    opening: int = 0
 
     @property
     def key(self) -> tuple[object, ...]:

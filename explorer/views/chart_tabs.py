@@ -68,7 +68,8 @@ def _compute_curves(session: Session, designs: Designs) -> None:
 def _resistance(session: Session, designs: Designs) -> Drawing:
     curves = _with_curves(session, designs)
     sheet = _sheet(session, 0.24, 190.0, 260.0)
-    level = session.selected.evaluation.level if session.selected else 1
+    selected = session.selected
+    level = selected.evaluation.level if selected else 1
     complete = len(curves) == len(overlaid(session, designs))
     waiting = "" if complete else " The other designs' curves are being computed …"
     points = [(look, found.points, evaluation) for look, evaluation, found in curves]
@@ -150,7 +151,8 @@ def _cut_plan(session: Session, designs: Designs) -> None:
 
 
 def _parallel(session: Session, _designs: Designs) -> Drawing:
-    selected = session.selected.design_id if session.selected else None
+    shown = session.selected
+    selected = shown.design_id if shown else None
     sheet = _sheet(session, 0.36, 240.0, 360.0)
     return [parallel_chart(session.picture, session.filters, selected, session.scrubbed, sheet.width, sheet.height)]
 

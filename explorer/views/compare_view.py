@@ -8,6 +8,7 @@ from explorer.server.bridge import PageEvent
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Session
+from explorer.state.shown import Shown
 from explorer.views.chips import GAP, box, chip, chips, soft
 from explorer.views.tables import many_table
 from hpsop_core.markup import Markup, fill
@@ -30,7 +31,8 @@ class CompareView:
     def draw(self) -> None:
         """Draw everything again."""
         session = self._session
-        if not session.pins:
+        pins, shown, picture = session.pins, session.selected, session.picture
+        if not pins:
             self._html.show(
                 box(
                     Markup(
@@ -43,9 +45,9 @@ class CompareView:
             )
             return
         rows = []
-        for index, item in enumerate(session.pins):
+        for index, item in enumerate(pins):
             ghosted = session.options.ghost and session.options.ghost_of == item.name
-            selected = session.selected is not None and session.selected.key == item.key
+            selected = shown is not None and shown.key == item.key
             rows.append(
                 chips(
                     fill(
@@ -58,35 +60,36 @@ class CompareView:
                     chip("unpin", "unpin", str(index)),
                 )
             )
-        levels = {item.evaluation.level for item in session.pins}
+        levels = {item.evaluation.level for item in pins}
         if len(levels) > 1:
             rows.append(
                 soft(
                     "Levels differ: each is compared with the initial design at its own level; the column “initial” "
-                    f"is level {session.pins[-1].evaluation.level}."
+                    f"is level {pins[-1].evaluation.level}."
                 )
             )
         initials = {level: self._designs.initial(level) for level in levels}
-        table = many_table(initials, session.pins, condition_names(session.picture.case))
+        table = many_table(initials, pins, condition_names(picture.case))
         self._html.show(box(*rows, table))
 
-    def _index(self, event: PageEvent) -> int | None:
+    def _pinned(self, event: PageEvent) -> Shown | None:
+        pins = self._session.pins
         index = int(event.arg) if event.arg.isdecimal() and len(event.arg) < 3 else -1
-        return index if 0 <= index < len(self._session.pins) else None
+        return pins[index] if 0 <= index < len(pins) else None
 
     def _ghost(self, event: PageEvent) -> None:
-        index = self._index(event)
-        if index is not None:
-            options, name = self._session.options, self._session.pins[index].name
+        item = self._pinned(event)
+        if item is not None:
+            options, name = self._session.options, item.name
             same = options.ghost and options.ghost_of == name
             self._session.set_options(ghost=not same, ghost_of="initial" if same else name)
 
     def _unpin(self, event: PageEvent) -> None:
-        index = self._index(event)
-        if index is not None:
-            self._session.pin(self._session.pins[index])
+        item = self._pinned(event)
+        if item is not None:
+            self._session.pin(item)
 
     def _show(self, event: PageEvent) -> None:
-        index = self._index(event)
-        if index is not None:
-            self._session.select(self._session.pins[index])
+        item = self._pinned(event)
+        if item is not None:
+            self._session.select(item)

@@ -88,5 +88,6 @@ class DesignView:
             select_design(self._session, self._designs, picture.knee)
 
     def _pin(self, _event: PageEvent) -> None:
-        if self._session.selected is not None:
-            self._session.pin(self._session.selected)
+        selected = self._session.selected
+        if selected is not None:
+            self._session.pin(selected)

@@ -21,6 +21,7 @@ from explorer.server.bridge import PageEvent, scrolling
 from explorer.server.html_slot import Slot
 from explorer.server.widgets import set_value
 from explorer.services.designs import Designs
+from explorer.state.run_picture import RunPicture
 from explorer.state.session import Session
 from explorer.state.table_options import WHICH
 from explorer.views.chips import GAP, NOTHING, box, chip, chips, soft
@@ -85,7 +86,7 @@ class TableView:
         if not len(picture.ids):
             self._html.show(box(soft("No designs yet. Press Start: every design that is evaluated gets a row here.")))
             return
-        rows = self._rows()
+        rows = self._rows(picture)
         page, pages = page_of(rows, options), max(-(-len(rows) // ROWS), 1)
         which = chips(
             *(chip("table_which", word, word, on=options.which == word, hint=_HINTS[word]) for word in WHICH),
@@ -110,14 +111,15 @@ class TableView:
             GAP,
             chip("table_page", "to the selected", "selected", hint="the page on which the selected design stands"),
         )
-        selected = session.selected.design_id if session.selected else None
+        shown = session.selected
+        selected = shown.design_id if shown else None
         refused = fill('<p class="bad" role="alert">{}</p>', self._refused) if self._refused else NOTHING
         self._html.show(
             box(
                 refused,
-                self._filters(),
+                self._filters(picture),
                 which,
-                self._choice() if options.choosing else NOTHING,
+                self._choice(picture) if options.choosing else NOTHING,
                 turning,
                 scrolling("designs", designs_table(picture, options, rows, selected, session.stars))
                 if len(rows)
@@ -125,7 +127,7 @@ class TableView:
             )
         )
 
-    def _filters(self) -> Markup:
+    def _filters(self, picture: RunPicture) -> Markup:
         session = self._session
         if not session.filters:
             return NOTHING
@@ -134,7 +136,7 @@ class TableView:
             *(
                 chip(
                     "table_unfilter",
-                    fill("{} ✕", range_words(key, limits, session.picture)),
+                    fill("{} ✕", range_words(key, limits, picture)),
                     key,
                     on=True,
                     hint="drop this condition",
@@ -143,11 +145,10 @@ class TableView:
             ),
         )
 
-    def _choice(self) -> Markup:
-        session = self._session
-        shown = {item.key for item in chosen_columns(session.picture, session.table)}
+    def _choice(self, picture: RunPicture) -> Markup:
+        shown = {item.key for item in chosen_columns(picture, self._session.table)}
         groups: dict[str, list[Markup]] = {}
-        for item in known_columns(session.picture).values():
+        for item in known_columns(picture).values():
             button = chip(
                 "table_column",
                 symbol_html(item.symbol),
@@ -160,9 +161,10 @@ class TableView:
         usual = chips(chip("table_column", "usual columns", "", hint="the columns that stand here at first"))
         return fill('<div class="tools choice">{}{}{}</div>', joined(parts), soft("", "span"), usual)
 
-    def _rows(self) -> Any:
+    def _rows(self, picture: RunPicture) -> Any:
+        """Rows of this very picture: the run may grow, or another one come on display, at any moment."""
         session = self._session
-        return table_rows(session.picture, session.table, session.filters, session.stars)
+        return table_rows(picture, session.table, session.filters, session.stars)
 
     # ---- filters ---------------------------------------------------------------------------------------------------
     def _type(self) -> None:
@@ -201,12 +203,14 @@ class TableView:
             self._session.set_table(which=event.arg, page=0)
 
     def _turn(self, event: PageEvent) -> None:
-        session, rows = self._session, self._rows()
+        session, picture = self._session, self._session.picture
+        rows = self._rows(picture)
         page = page_of(rows, session.table)
         last = max(-(-len(rows) // ROWS) - 1, 0)
         if event.arg == "selected":
-            selected = session.selected.design_id if session.selected else None
-            place = [index for index, row in enumerate(rows) if int(session.picture.ids[row]) == selected]
+            shown = session.selected
+            selected = shown.design_id if shown else None
+            place = [index for index, row in enumerate(rows) if int(picture.ids[row]) == selected]
             if not place:
                 session.notify("Not in the table", "the selected design is not among the rows chosen", "yellow")
                 return
@@ -219,14 +223,14 @@ class TableView:
         self._session.set_table(choosing=not self._session.table.choosing)
 
     def _column(self, event: PageEvent) -> None:
-        session = self._session
-        shown = [item.key for item in chosen_columns(session.picture, session.table)]
+        session, picture = self._session, self._session.picture
+        shown = [item.key for item in chosen_columns(picture, session.table)]
         if not event.arg:
             session.set_table(columns=())
         elif event.arg in shown:
             if len(shown) > 1:
                 session.set_table(columns=tuple(key for key in shown if key != event.arg))
-        elif event.arg in known_columns(session.picture):
+        elif event.arg in known_columns(picture):
             session.set_table(columns=(*shown, event.arg))
 
     def _select(self, event: PageEvent) -> None:
@@ -238,9 +242,9 @@ class TableView:
             self._session.star(int(event.arg))
 
     def _csv(self, _event: PageEvent) -> None:
-        session = self._session
-        text = designs_csv(session.picture, session.table, self._rows(), session.stars)
-        name = session.picture.name.removesuffix(".hpsop") or "hpsop"
+        session, picture = self._session, self._session.picture
+        text = designs_csv(picture, session.table, self._rows(picture), session.stars)
+        name = picture.name.removesuffix(".hpsop") or "hpsop"
         self._download(f"{name}-designs.csv", text.encode("utf-8"))
 
 

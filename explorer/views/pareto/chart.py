@@ -20,6 +20,7 @@ from explorer.charts.pareto import (
 )
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
+from explorer.state.run_picture import RunPicture
 from explorer.state.session import Limits, Session
 from explorer.state.table_options import TableOptions
 from explorer.views.chips import NOTHING, box, soft
@@ -94,7 +95,7 @@ class ParetoChart:
             keys += [Key("star", "compromise", "compromise"), Key("diamond", "knee", "knee")]
         if bool(picture.by_hand.any()):
             keys.append(Key("square", "hand", "by hand"))
-        if session.pins:
+        if any(item.opening == picture.opening for item in session.pins):
             keys.append(Key("triangle", "pin1", "pinned"))
         rows, names, sentence = newest_families(picture, options.generation)
         words = fill('<p class="standing" data-narrow="1">{}</p>', sentence) if sentence else NOTHING
@@ -102,7 +103,7 @@ class ParetoChart:
             words += soft(
                 f"×n: n designs that the error of their numbers cannot tell apart; {max(names)} such families."
             )
-        plot = pareto_chart(picture, self._background[1], self._marks(), keys)
+        plot = pareto_chart(picture, self._background[1], self._marks(picture), keys)
         stars = session.stars
 
         def numbers() -> str:
@@ -132,16 +133,16 @@ class ParetoChart:
     def _height(self) -> float:
         return min(max(0.5 * self._session.size[1] - 178.0, 190.0), 400.0)
 
-    def _marks(self) -> list[Mark]:
+    def _marks(self, picture: RunPicture) -> list[Mark]:
+        """Designs of the run that is drawn: the next one may come on display meanwhile, and is then drawn anew."""
         session = self._session
-        initial = self._designs.first().evaluation.objectives
-        marks = [_mark(initial, "square", 4.5, "initial", "initial design")]
+        shown = [(self._designs.first(), "square", 4.5, "initial", "initial design")]
         for index, item in enumerate(session.pins):
-            marks.append(_mark(item.evaluation.objectives, "triangle", 5.5, f"pin{index + 1}", f"pinned: {item.label}"))
+            shown.append((item, "triangle", 5.5, f"pin{index + 1}", f"pinned: {item.label}"))
         selected = session.selected
         if selected is not None:
-            title = f"selected: {selected.label}"
-            marks.append(_mark(selected.evaluation.objectives, "ring", 8.0, "selected", title))
+            shown.append((selected, "ring", 8.0, "selected", f"selected: {selected.label}"))
+        marks = [_mark(item.evaluation.objectives, *look) for item, *look in shown if item.opening == picture.opening]
         return [mark for mark in marks if mark is not None]
 
 

@@ -115,7 +115,8 @@ class ParetoPicking:
         order = front_order(session.picture, session.scrubbed)
         if not order:
             return
-        now = session.selected.design_id if session.selected is not None else None
+        selected = session.selected
+        now = selected.design_id if selected is not None else None
         if event.key == "Home":
             target = 0
         elif event.key == "End":

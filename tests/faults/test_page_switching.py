@@ -1,0 +1,161 @@
+"""Another run comes on display while views, clicks and news of the one before are still under way."""
+
+from __future__ import annotations
+
+import itertools
+import shutil
+import threading
+from collections.abc import Iterator
+from pathlib import Path
+from unittest.mock import MagicMock
+
+import pytest
+from quick_physics import physics
+from run_files import small_case, wait_until
+
+from explorer.server.worker import LatestWorker
+from explorer.services.designs import Designs
+from explorer.services.library import RunLibrary
+from explorer.services.runs import Runs
+from explorer.state.app_state import AppState
+from explorer.state.draft import Draft
+from explorer.state.hub import Hub
+from explorer.state.run_picture import RunPicture
+from explorer.state.session import Session
+from explorer.views.on_display import select_design
+from explorer.views.table_view import TableView
+from hpsop_core.runs.controller import optimize
+
+
+class Page:
+    """The page's state and its runs, without a server."""
+
+    def __init__(self, folder: Path) -> None:
+        case = small_case()
+        draft = Draft(case)
+        draft.begin(case)
+        self.worker = LatestWorker("test")
+        self.state = AppState(draft, self.worker, Hub(self.worker), RunPicture("", case))
+        self.designs = Designs(self.state)
+        self.runs = Runs(self.state, self.designs, RunLibrary(folder), workers=1)
+        self.session = Session(self.state, 1, lambda *_: None)
+        self.state.join(1, self.session)
+
+
+@pytest.fixture(scope="module")
+def finished(tmp_path_factory: pytest.TempPathFactory) -> tuple[Path, Path]:
+    """A run of three generations and one of a single one, in two folders, of one name."""
+    long, short = (tmp_path_factory.mktemp(name) / "run.hpsop" for name in ("long", "short"))
+    optimize(small_case(), long, workers=1, physics=physics())
+    optimize(small_case(generations=1, level1_generations=1), short, workers=1, physics=physics())
+    return long, short
+
+
+@pytest.fixture
+def page(tmp_path: Path) -> Iterator[Page]:
+    made = Page(tmp_path)
+    yield made
+    made.session.close()
+    made.runs.close()
+    made.worker.close()
+
+
+def test_late_news_of_the_run_before_does_not_come_back(
+    page: Page, finished: tuple[Path, Path], tmp_path: Path
+) -> None:
+    first, second = tmp_path / "first.hpsop", tmp_path / "second.hpsop"
+    shutil.copy(finished[0], first)
+    shutil.copy(finished[1], second)
+    page.runs.open(first)
+    keeper = page.runs._keeper
+    assert keeper is not None
+    asked, go_on, opened = threading.Event(), threading.Event(), threading.Event()
+    make = keeper.picture
+
+    def slow_picture() -> RunPicture:
+        picture = make()
+        asked.set()
+        assert go_on.wait(60.0)
+        return picture
+
+    keeper.picture = slow_picture  # type: ignore[method-assign]
+    page.runs.news()
+    assert asked.wait(60.0)
+
+    def switch() -> None:
+        page.runs.open(second)
+        opened.set()
+
+    thread = threading.Thread(target=switch)
+    thread.start()
+    # where the late picture does not hold it up the other run is on display now
+    opened.wait(0.5)
+    go_on.set()
+    thread.join(60.0)
+    assert page.runs._pictures.wait_until_idle(60.0)
+    assert page.state.picture.name == "second.hpsop"
+
+
+def test_a_click_on_the_run_before_selects_nothing_in_the_next(page: Page, finished: tuple[Path, Path]) -> None:
+    page.runs.open(finished[0])
+    late = page.designs.shown(3)
+    assert late is not None
+    page.session.select(late)
+    page.session.pin(late)
+    assert page.session.selected is late
+    # of the same name and also with a design 3
+    page.runs.open(finished[1])
+    now = page.session.selected
+    assert now is not None and now is not late
+    assert page.session.pins == ()
+    page.session.select(late)
+    page.session.pin(late)
+    assert page.session.selected is now
+    assert page.session.pins == ()
+    select_design(page.session, page.designs, 3)
+    assert page.session.selected is not now
+
+
+def test_while_the_next_run_s_first_design_is_computed_none_of_the_run_before_is_shown(
+    page: Page, finished: tuple[Path, Path]
+) -> None:
+    page.runs.open(finished[0])
+    session = page.session
+    assert session.selected is not None
+    session.pin(session.selected)
+    seen = []
+
+    def first() -> None:
+        seen.append((session.selected, session.pins))
+
+    page.state.show_run(RunPicture("other.hpsop", small_case(), opening=999), first)
+    assert seen == [(None, ())]
+
+
+def test_the_same_file_opened_again_keeps_what_is_selected(page: Page, finished: tuple[Path, Path]) -> None:
+    page.runs.open(finished[0])
+    select_design(page.session, page.designs, 3)
+    selected = page.session.selected
+    page.runs.open(finished[0])
+    assert page.session.selected is selected
+
+
+def test_a_table_is_drawn_of_one_picture(
+    page: Page, finished: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Another run comes on display between any two looks: rows of one never meet the columns of another."""
+    pictures = []
+    for path in finished:
+        page.runs.open(path)
+        pictures.append(page.state.picture)
+    assert len(pictures[0].ids) > len(pictures[1].ids)
+    view = TableView(page.session, page.designs, MagicMock(), lambda *_: None)
+    wait_until(lambda: page.session.worker.wait_until_idle(1.0))
+    page.session.table = page.session.table.restored({"which": "all", "choosing": True})
+    event = MagicMock(arg="selected")
+    for order in (pictures, pictures[::-1]):
+        looks = itertools.cycle(order)
+        monkeypatch.setattr(Session, "picture", property(lambda _session, looks=looks: next(looks)))
+        view.draw()
+        view._csv(event)
+        view._turn(event)
