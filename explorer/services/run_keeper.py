@@ -102,7 +102,7 @@ class RunKeeper:
             self._controller.subscribe(self._on_event)
         self._file = _identity(path)
         same = before is not None and self._file is not None and before._file == self._file
-        self.opening = before.opening if before is not None and same else next(_openings)
+        self.opening: int = before.opening if before is not None and same else next(_openings)
         self._watcher = threading.Thread(target=self._watch, name="run-watch", daemon=True)
         self._watcher.start()
 

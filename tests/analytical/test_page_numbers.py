@@ -157,6 +157,8 @@ def test_a_click_means_the_nearest_design_and_shows_that_one(initial: Ok) -> Non
     assert pick(picture, options, x0 + 0.02 * (x1 - x0), y0 + 0.02 * (y1 - y0), limits, size) == []
 
     class Source:
+        opening = 0
+
         def evaluation(self, design_id: int) -> Ok:
             return dataclasses.replace(initial, objectives={"f1": float(design_id), "f2": 0.0})
 

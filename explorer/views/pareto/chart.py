@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
-
 import viser
 
 from explorer.charts.designs_table import designs_csv
@@ -22,6 +20,7 @@ from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.run_picture import RunPicture
 from explorer.state.session import Limits, Session
+from explorer.state.shown import Shown
 from explorer.state.table_options import TableOptions
 from explorer.views.chips import NOTHING, box, soft
 from explorer.views.saving import Figure, Saving
@@ -135,14 +134,12 @@ class ParetoChart:
 
     def _marks(self, picture: RunPicture) -> list[Mark]:
         """Designs of the run that is drawn: the next one may come on display meanwhile, and is then drawn anew."""
-        session = self._session
-        shown = [(self._designs.first(), "square", 4.5, "initial", "initial design")]
+        session, selected = self._session, self._session.selected
+        marks = [_mark(picture, self._designs.first(), "square", 4.5, "initial", "initial design")]
         for index, item in enumerate(session.pins):
-            shown.append((item, "triangle", 5.5, f"pin{index + 1}", f"pinned: {item.label}"))
-        selected = session.selected
+            marks.append(_mark(picture, item, "triangle", 5.5, f"pin{index + 1}", f"pinned: {item.label}"))
         if selected is not None:
-            shown.append((selected, "ring", 8.0, "selected", f"selected: {selected.label}"))
-        marks = [_mark(item.evaluation.objectives, *look) for item, *look in shown if item.opening == picture.opening]
+            marks.append(_mark(picture, selected, "ring", 8.0, "selected", f"selected: {selected.label}"))
         return [mark for mark in marks if mark is not None]
 
 
@@ -151,8 +148,9 @@ def _same(first: tuple[object, ...], second: tuple[object, ...]) -> bool:
     return first[0] is second[0] and first[1:] == second[1:]
 
 
-def _mark(objectives: Mapping[str, float | None], shape: str, size: float, css: str, title: str) -> Mark | None:
+def _mark(picture: RunPicture, item: Shown, shape: str, size: float, css: str, title: str) -> Mark | None:
+    objectives = item.evaluation.objectives
     f1, f2 = objectives.get("f1"), objectives.get("f2")
-    if f1 is None or f2 is None:
+    if f1 is None or f2 is None or item.opening != picture.opening:
         return None
     return Mark(float(f1), float(f2), shape, size, css, title)
