@@ -2,7 +2,8 @@
 
 * design_files: a design's files into a folder or an archive, all of them or none; formats: which there are; design:
   what every writer gets
-* surfaces: NURBS; exchange: handed to geomdl, openNURBS and OpenCASCADE; rhino: 3DM; solids: STEP and IGES
+* surfaces: NURBS; fairing: their seams; exchange: handed to geomdl, openNURBS and OpenCASCADE; rhino: 3DM; solids:
+  STEP and IGES
 * meshes: STL and GLB; slivers: taken out of a mesh; lines: DXF
 * vtp: waves and pressures for ParaView; panel_files: GDF; pff: the propeller free format
 * sheets: drawings on paper, DXF and SVG

@@ -32,9 +32,10 @@ Metres and SI units. Ship axes: x forward from the after perpendicular, y to por
 stands in its place behind the hull. (design.glb alone follows glTF: y up, starboard = +z.)
 
 {files}
-The surfaces are the very ones that were computed: the NURBS leave the evaluated hull by at most {deviation:.2g} m (the
-longitudinal shift is refitted), the meshes of hull.stl enclose the hull to its deck. Root fillets of the blades are in
-the meshes only. Trailing edges and tips of the blades are {edge:.2g} m thick (the solvers' panels close to nothing).
+The surfaces are the very ones that were computed: the NURBS leave the evaluated hull by at most {deviation:.2g} m
+(beside seams, which were given a common tangent, and where the longitudinal shift is refitted), the meshes of hull.stl
+enclose the hull to its deck. Root fillets of the blades are in the meshes only. Trailing edges and tips of the blades
+are {edge:.2g} m thick (the solvers' panels close to nothing).
 {warnings}"""
 
 _MEANING = {

@@ -6,6 +6,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
+from hpsop_core.export.fairing import faired_seams
 from hpsop_core.geometry.clearance import propeller_placement
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.nurbs import NurbsSurface, clamped_knots
@@ -41,15 +42,16 @@ class NamedSurface:
 def hull_surfaces(hull: Hull) -> tuple[tuple[NamedSurface, ...], float]:
     """Every patch of both sides with deck, transom and boss end, and the largest deviation from the hull in m.
 
-    The deviation is that of refitting the longitudinal shift (``Hull.nurbs_patch``); it is zero to rounding for a hull
-    that is only scaled.
+    The deviation is that of refitting the longitudinal shift (``Hull.nurbs_patch``), zero to rounding for a hull that
+    is only scaled, and that of the strips beside seams (``fairing``), which is the larger one as a rule.
     """
     found: list[NamedSurface] = []
-    deviation = 0.0
+    refitted = {patch.name: hull.nurbs_patch(patch.name) for patch in hull.patches}
+    surfaces, deviation = faired_seams(hull.parent, {name: surface for name, (surface, _) in refitted.items()})
+    deviation += max(off for _, off in refitted.values())
     for group, names in (("hull underwater", hull.parent.underwater), ("hull topsides", hull.parent.topsides)):
         for name in names:
-            surface, off = hull.nurbs_patch(name)
-            deviation = max(deviation, off)
+            surface = surfaces[name]
             found.extend(_both_sides(group, name, surface))
             for cap, end in hull.parent.caps:
                 if cap == name:

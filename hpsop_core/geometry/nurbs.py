@@ -174,6 +174,13 @@ class NurbsSurface:
             tangents.append((numerator - slope[..., None] * points) / weight[..., None])
         return points, tangents[0], tangents[1]
 
+    def transposed(self) -> NurbsSurface:
+        """The same points with u and v exchanged."""
+        return NurbsSurface(
+            self.degree_v, self.degree_u, self.knots_v, self.knots_u,
+            self.control_points.transpose(1, 0, 2), self.weights.T,
+        )  # fmt: skip
+
     @one_blas_thread()
     def with_knots_u(self, knots: Array) -> NurbsSurface:
         """The same surface with further knots in u (for polynomial and rational surfaces alike).

@@ -214,7 +214,7 @@ addLayersControls
 meshQualityControls
 {{
     maxNonOrtho 65;
-    maxBoundarySkewness 20;
+    maxBoundarySkewness 4;
     maxInternalSkewness 3.5;
     maxConcave 80;
     minVol 1e-13;
