@@ -6,7 +6,7 @@
   STEP and IGES
 * meshes: STL and GLB; slivers: taken out of a mesh; lines: DXF
 * vtp: waves and pressures for ParaView; panel_files: GDF; pff: the propeller free format
-* sheets: drawings on paper, DXF and SVG
+* sheets: drawings on paper, DXF, SVG and PDF
 * openfoam: a case for viscous flow
 * tables, offsets: CSV
 

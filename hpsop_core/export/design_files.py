@@ -47,6 +47,7 @@ _MEANING = {
     "design.iges": "the same as IGES, manifold solids (entity 186); millimetres",
     "lines.dxf": "stations, waterlines, buttocks, profile (port side) and blade sections as 3D polylines",
     "drawings.dxf": "lines plan and propeller drawing as two layouts on A1; millimetres of paper",
+    "drawings.pdf": "the same two sheets as pages of A1, to print",
     "lines_plan.svg": "the lines plan on A1, to print",
     "propeller_drawing.svg": "the propeller drawing on A1, to print",
     "waves_N.vtp": "the water surface at condition N, for ParaView",
@@ -200,7 +201,7 @@ def _write(design: LeavingDesign, folder: Path, formats: Sequence[str]) -> list[
 
         write_openfoam(folder / "openfoam", design)
     texts: dict[str, str] = {}
-    if {"dxf", "svg"} & set(formats):
+    if {"dxf", "svg", "pdf"} & set(formats):
         texts |= _drawings(design, folder, formats)
     if "csv" in formats:
         texts |= {
@@ -238,14 +239,17 @@ def _write(design: LeavingDesign, folder: Path, formats: Sequence[str]) -> list[
 
 
 def _drawings(design: LeavingDesign, folder: Path, formats: Sequence[str]) -> dict[str, str]:
-    """The sheets: written as DXF, returned as SVG by name."""
+    """The sheets: written as DXF and PDF, returned as SVG by name."""
     from hpsop_core.export.sheets.lines_plan import lines_plan
     from hpsop_core.export.sheets.paper import sheet_svg, write_sheets_dxf
+    from hpsop_core.export.sheets.pdf import sheets_pdf
     from hpsop_core.export.sheets.propeller_drawing import propeller_drawing
 
     sheets = lines_plan(design), propeller_drawing(design)
     if "dxf" in formats:
         write_sheets_dxf(folder / "drawings.dxf", sheets)
+    if "pdf" in formats:
+        (folder / "drawings.pdf").write_bytes(sheets_pdf(sheets, design.title))
     if "svg" not in formats:
         return {}
     return {"lines_plan.svg": sheet_svg(sheets[0]), "propeller_drawing.svg": sheet_svg(sheets[1])}

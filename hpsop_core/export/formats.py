@@ -7,7 +7,7 @@ from importlib.util import find_spec
 
 from hpsop_core.errors import InputError
 
-FORMATS = ("stl", "glb", "3dm", "step", "iges", "dxf", "csv", "json", "vtk", "pff", "openfoam", "gdf", "svg")
+FORMATS = ("stl", "glb", "3dm", "step", "iges", "dxf", "csv", "json", "vtk", "pff", "openfoam", "gdf", "svg", "pdf")
 
 OF_OPENCASCADE = ("step", "iges")
 """Written by OpenCASCADE, the extra ``hpsop[cad]``."""
