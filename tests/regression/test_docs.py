@@ -168,6 +168,17 @@ def test_toml_of_the_docs_is_toml_of_a_case() -> None:
                 assert set(tomllib.loads(block)) <= {*known, "bounds"}, name
 
 
+def test_the_paper_cites_what_it_lists_and_nothing_else() -> None:
+    text = (ROOT / "paper" / "paper.md").read_text(encoding="utf-8")
+    listed = re.findall(r"^@\w+\{(\w+),", (ROOT / "paper" / "paper.bib").read_text(encoding="utf-8"), re.MULTILINE)
+    cited = set(re.findall(r"@(\w+)", text))
+    assert len(listed) == len(set(listed)) > 10 and cited == set(listed)
+    # what the journal asks for
+    titles = re.findall(r"^# (.+)$", text, re.MULTILINE)
+    assert {"Summary", "Statement of need", "State of the field", "References"} <= set(titles)
+    assert len(text.split("---", 2)[2].split()) < 1000
+
+
 def test_a_flow_chart_has_its_boxes_and_arrows_in_rows() -> None:
     drawn = flow_chart('flowchart BT\n  a["one<br/>first"] --> b\n  a --> c["<&>"]\n  b["two"] --> c\n')
     assert drawn.count("<rect") == 3 and drawn.count("<line") == 3
