@@ -14,6 +14,16 @@ def variable_label(variable: Variable) -> str:
     return f"{variable.symbol} [{variable.rule.unit}]" if variable.rule.unit else variable.symbol
 
 
+def standing_label(variable: Variable, side: str | None) -> str:
+    """The label of a design's slider: with an arrow where the design stands on its lower or upper bound."""
+    return variable_label(variable) + {None: "", "lower": " ↓", "upper": " ↑"}[side]
+
+
+def standing_hint(variable: Variable, side: str | None) -> str:
+    """What a slider's hint says, also of the bound that the design stands on."""
+    return variable.rule.meaning + ("" if side is None else f"; this design stands on its {side} bound")
+
+
 def slider_decimals(variable: Variable, value: float) -> int:
     """Digits after the point of a slider's numbers around an initial design's value."""
     step = Decimal(repr(variable.step_near(value))).normalize()

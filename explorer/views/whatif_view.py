@@ -15,7 +15,7 @@ from explorer.state.session import Session
 from explorer.state.shown import Shown
 from explorer.views.chips import NOTHING, box, soft
 from explorer.views.on_display import select_design
-from explorer.views.settings_fields import slider_decimals, variable_label
+from explorer.views.settings_fields import slider_decimals, standing_hint, standing_label, variable_label
 from explorer.views.tables import headline, warnings_html
 from hpsop_core.case.variables import VARIABLE_TABLE, DesignVariables
 from hpsop_core.errors import HpsopError, InputError
@@ -89,7 +89,16 @@ class WhatIfView:
                 if value > slider.max:
                     slider.max = value
                 set_value(slider, value)
+        self._mark_bounds(shown)
         self._draw(shown)
+
+    def _mark_bounds(self, shown: Shown) -> None:
+        """An arrow at every slider whose variable stands on a bound of the case, and words under the pointer."""
+        for key, slider in self._sliders.items():
+            variable, side = VARIABLE_TABLE[key], shown.evaluation.active_bounds.get(key)
+            label = standing_label(variable, side)
+            if slider.label != label:
+                slider.label, slider.hint = label, standing_hint(variable, side)
 
     def _draw(self, shown: Shown) -> None:
         if shown.kind != "whatif":

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import json
 import math
+import re
 import zipfile
 
 import numpy as np
@@ -178,8 +179,8 @@ def test_pins_stand_side_by_side(page, session):
 
 
 def drag_slider(page, label: str, share: float) -> None:
-    """Click on the track of a slider of the what-if panel, found by its own label."""
-    box = page.locator("label:visible").get_by_text(label, exact=True).last.bounding_box()
+    """Click on the track of a slider of the what-if panel, found by its own label, with or without a bound's arrow."""
+    box = page.locator("label:visible").get_by_text(re.compile(rf"^{re.escape(label)}( [↑↓])?$")).last.bounding_box()
     track = page.evaluate(
         """(y) => { const found = [...document.querySelectorAll('.mantine-Slider-track')].filter(e => {
             const r = e.getBoundingClientRect();
