@@ -6,6 +6,7 @@
 * fit_dtc: the shipped hull from the offsets of the reference ship; dtc_sections: those offsets, read
 * hull_campaign: public ships as tables of every kind, read and measured
 * licences: docs/licences.md from what is installed; lock: the pins with hashes that `make` installs
+* paper_run: docs/paper-run.md and its figures from a run of the paper's case
 * pictures: a folder: the pictures of the docs; validation: docs/validation.md and its plots
 * docs_site: what the documentation's site has beside docs/; flow_chart: a flow chart as SVG
 * chromium: which Chromium shows the page without a screen, and how it starts

@@ -94,7 +94,7 @@ def _name_curves(plot: Plot, drawn: Sequence[Curves]) -> None:
     for place, height, word, dx, dy in (
         (1, max(float(kq[1]) for _, _, kq, _ in drawn), "10K_Q", 5, -5),
         (peak, max(float(np.nanmax(eta)) for *_, eta in drawn), "η₀", -4, -5),
-        (late, min(float(np.nan_to_num(kt[late])) for _, kt, _, _ in drawn), "K_T", -20, 12),
+        (late, min((float(kt[late]) for _, kt, _, _ in drawn if kt[late] > 0.0), default=0.0), "K_T", -20, 12),
     ):
         plot.text(float(j[place]), height, word, dx=dx, dy=dy)
 

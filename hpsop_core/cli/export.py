@@ -42,7 +42,9 @@ def add_parsers(commands: Any) -> None:
 
     reproduce = commands.add_parser("reproduce", help="the paper's tables and figures beside ours")
     reproduce.add_argument("--to", metavar="FOLDER", required=True, help="for page, tables, run; a run in it goes on")
-    reproduce.add_argument("--run", metavar="RUN.hpsop", help=f"take this run of {CASE_NAME} as it is")
+    reproduce.add_argument(
+        "--run", metavar="RUN.hpsop", help=f"show this run as it is, of {CASE_NAME} or any other case"
+    )
     reproduce.add_argument("--generations", type=int, metavar="TOTAL", help="fewer for a first look; 150 by default")
     reproduce.add_argument("--population", type=int, metavar="N", help="fewer for a first look; 50 by default")
     reproduce.add_argument("--workers", type=int, metavar="N", help="local processes; one a core by default")
@@ -91,14 +93,14 @@ def _report(arguments: argparse.Namespace) -> int:
 
 
 def _reproduce(arguments: argparse.Namespace) -> int:
-    from hpsop_core.reproduction.reproduce import checked_run, run_path, write_reproduction
+    from hpsop_core.reproduction.reproduce import checked_run, made_folder, run_path, write_reproduction
 
     asked = [name for name in ("generations", "population", "workers") if getattr(arguments, name) is not None]
     if arguments.run is not None:
         if asked:
             raise InputError(f"reproduce: --run takes a run as it is; leave --{asked[0]} or --run away")
-        run = checked_run(open_run(arguments.run))
-        run_path(arguments.to)
+        run = open_run(arguments.run)
+        made_folder(arguments.to)
     else:
         path = run_path(arguments.to)
         if os.path.exists(path) and path.stat().st_size:

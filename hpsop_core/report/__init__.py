@@ -1,6 +1,7 @@
 """A run as one HTML file to print or pass on; called, it is ``report`` of the Python interface.
 
-* report: the file from a run, chapter by chapter; data: what it draws from
+* report: the file from a run, chapter by chapter; search: its chapters of the search and of its front
+* data: what it draws from; csv_table: a table as values; paper_tables, paper_figures: the paper's, for any run
 * words: what the case assumes and how far its numbers can be trusted; tables: the tables
 * looks: how designs look in its charts, and how large these are
 * html_page: the file's frame and how it is put in its place

@@ -8,13 +8,13 @@ from __future__ import annotations
 import contextlib
 import os
 import tempfile
-from collections.abc import Sequence
+from collections.abc import Callable, Sequence
 from dataclasses import dataclass
 from pathlib import Path
 
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.style import PRINT, style_sheet
-from hpsop_core.errors import InputError
+from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.markup import Markup, fill, joined, one_line, xml_text
 
 _STYLE = """
@@ -166,6 +166,14 @@ def chart_html(plot: Plot, name: str, caption: str) -> Markup:
     """
     figure = '<figure id="figure-{}">{}<figcaption>{}</figcaption></figure>'
     return fill(figure, name, plot.svg(name), one_line(caption))
+
+
+def figure_or_why(draw: Callable[[], Markup]) -> Markup:
+    """A figure, or the sentence that says why there is none."""
+    try:
+        return draw()
+    except SolverFailure as failure:
+        return paragraph(f"Not drawn: {failure}.")
 
 
 @dataclass(frozen=True)

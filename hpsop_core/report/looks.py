@@ -7,6 +7,8 @@ from hpsop_core.charts.style import PRINT
 
 INITIAL_LOOK = Look("initial", "initial", "dash")
 COMPROMISE_LOOK = Look("compromise", "selected")
+SPREAD_ROLES = ("chosen2", "chosen3", "chosen4", "chosen5", "chosen1")
+"""Of the other designs along a front: the compromise's colour comes last."""
 
 SHEET = Sheet(390.0, 285.0, PRINT)
 """Two stand side by side on A4, where letters are then 7 pt; on a phone one fills the width."""

@@ -5,35 +5,33 @@ from __future__ import annotations
 import os
 import shlex
 import time
-from collections.abc import Callable, Sequence
 from pathlib import Path
-
-import numpy as np
 
 from hpsop_core.charts.engine import engine_chart
 from hpsop_core.charts.hulls import body_plan_chart, sectional_area_chart
-from hpsop_core.charts.plot import Plot
-from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thrust_chart
-from hpsop_core.charts.search import Cloud, Front, Mark, convergence_chart, family_front, pareto_chart, window
-from hpsop_core.errors import InputError, SolverFailure
-from hpsop_core.evaluation.curves import hull_lines, thrust_curves
+from hpsop_core.charts.propulsion import open_water_chart
+from hpsop_core.errors import InputError
+from hpsop_core.evaluation.curves import hull_lines
 from hpsop_core.evaluation.levels import level_of
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.ship import engine_of
 from hpsop_core.markup import Markup, fill, joined, one_line
-from hpsop_core.quantities import change_text, number_text, objective_title, standing_on, violated
+from hpsop_core.quantities import change_text, number_text, standing_on, violated
 from hpsop_core.report.data import ReportData
 from hpsop_core.report.html_page import (
     Section,
     Words,
     bullets,
     chart_html,
+    figure_or_why,
     page,
     pair,
     paragraph,
     write_whole,
 )
 from hpsop_core.report.looks import SHEET, SMALL_SHEET
+from hpsop_core.report.paper_figures import thrust_figure
+from hpsop_core.report.search import front_chapter, search_chapter
 from hpsop_core.report.tables import (
     correlation_table,
     failure_table,
@@ -44,7 +42,6 @@ from hpsop_core.report.tables import (
 from hpsop_core.report.words import assumptions, trust
 from hpsop_core.runs.reader import RunReader
 from hpsop_core.runs.records import DesignRecord, front_families
-from hpsop_core.typing_aliases import Array
 from hpsop_core.version import __version__
 
 
@@ -60,8 +57,9 @@ def report_html(run: RunReader) -> str:
     failures = run.failures()
     sections = [
         Section("result", "Result", _result(data)),
-        Section("pareto", "Trade-off and search", _search(data)),
-        Section("propulsion", "Propeller and resistance", _propulsion(data)),
+        Section("pareto", "Trade-off and search", search_chapter(data)),
+        Section("spread", "Along the front", front_chapter(data)),
+        Section("propulsion", "Propeller and thrust", _propulsion(data)),
         Section("form", "Hull form", _form(data)),
         Section("drivers", "What drives what", _drivers(data)),
         Section("trust", "How far to trust these numbers", trust(data.case, data.level)),
@@ -205,96 +203,11 @@ def _in_short(data: ReportData, initial: Evaluation, record: DesignRecord) -> Ma
     return paragraph(first, "lead") + bullets(lines)
 
 
-def _search(data: ReportData) -> Markup:
-    if not data.generations:
-        return paragraph("No generation is finished yet.")
-    clouds, total = _clouds(data.run)
-    last = data.generations[-1]
-    return pair(
-        chart_html(
-            _pareto(data, clouds),
-            "pareto",
-            f"All {total} designs that could be computed; both objectives are minimised. Each level is normalised by "
-            "the initial design at that level, so points of different levels compare only roughly. Designs far off are "
-            "left out of the picture. ×n: a family of n designs that the error of their numbers cannot tell apart.",
-        ),
-        chart_html(
-            convergence_chart(
-                [item.number for item in data.generations],
-                [item.level for item in data.generations],
-                [item.hypervolume for item in data.generations],
-                last.number,
-                SHEET,
-                [item.feasible_share for item in data.generations],
-            ),
-            "convergence",
-            f"Hypervolume: the area between the front and the point (1.2, 1.2), one series a level; {len(data.front)} "
-            f"designs on the front of generation {last.number}. Dotted: feasible share of the population.",
-        ),
-    )
-
-
-def _pareto(data: ReportData, clouds: Sequence[Cloud]) -> Plot:
-    """The Pareto chart of a run as it is now."""
-    front = _objectives(data.front)
-    fronts = [Front(front, "front", 2.6, key="front")] if len(front) else []
-    if len(front):
-        belongs, _ = front_families(data.front)
-        dots, fronts[0] = family_front(fronts[0], belongs)
-        clouds = [*clouds, dots]
-    marks = []
-    for record, shape, size, name in (
-        (data.initial, "square", 4.5, "initial"),
-        (data.compromise, "star", 8.0, "compromise"),
-        (data.knee, "diamond", 5.0, "knee"),
-    ):
-        points = _objectives([record] if record is not None else [])
-        if len(points):
-            marks.append(Mark(float(points[0, 0]), float(points[0, 1]), shape, size, name, name, name))
-    core = np.concatenate([front, *(np.array([[mark.x, mark.y]]) for mark in marks)])
-    feasible = [cloud.points for cloud in clouds if cloud.css != "infeasible"]
-    limits = window(core, np.concatenate(feasible) if feasible else np.zeros((0, 2)))
-    names = data.case.objectives
-    titles = (objective_title(names.first, "f_1"), objective_title(names.second, "f_2"))
-    return pareto_chart(clouds, fronts, marks, limits, titles, SHEET)
-
-
-def _objectives(records: Sequence[DesignRecord]) -> Array:
-    """(n, 2) of those that could be computed."""
-    found = [record.evaluation.objectives for record in records if record.evaluation.ok]
-    return np.array([(f["f1"] or 0.0, f["f2"] or 0.0) for f in found], dtype=float).reshape(-1, 2)
-
-
-def _clouds(run: RunReader) -> tuple[list[Cloud], int]:
-    """Objectives of the infeasible designs, then of the feasible ones by level; and how many there are."""
-    points = [point for point in run.archive() if point.objectives is not None]
-
-    def cloud(chosen: list[tuple[float, float] | None], css: str, key: str) -> Cloud:
-        return Cloud(np.array(chosen, dtype=float).reshape(-1, 2), css, 1.6, key=key)
-
-    made = [cloud([p.objectives for p in points if not p.feasible], "infeasible", "infeasible")]
-    for level in sorted({point.level for point in points}):
-        own = [p.objectives for p in points if p.feasible and p.level == level]
-        made.append(cloud(own, f"level{level}", f"level {level}, feasible"))
-    return [item for item in made if len(item.points)], len(points)
-
-
-def _or_why(draw: Callable[[], Markup]) -> Markup:
-    """A figure, or the sentence that says why there is none."""
-    try:
-        return draw()
-    except SolverFailure as failure:
-        return paragraph(f"Not drawn: {failure}.")
-
-
 def _propulsion(data: ReportData) -> Markup:
     drawn = data.drawn()
     with_curves = [(look, evaluation) for look, evaluation in drawn if evaluation.ok]
     if not with_curves:
         return paragraph("There are no curves: no design has open-water results.")
-
-    knots = data.case.conditions.speeds_are_fixed
-    over = "over the speed" if knots else "over Froude number on each design's own length"
 
     def open_water() -> Markup:
         return chart_html(
@@ -305,21 +218,11 @@ def _propulsion(data: ReportData) -> Markup:
         )
 
     def thrust() -> Markup:
-        curves = [
-            (look, thrust_curves(data.case, evaluation, points), evaluation)
-            for look, points, evaluation in data.resistance
-        ]
         return chart_html(
-            thrust_chart(curves, SHEET, knots=knots),
+            thrust_figure(data),
             "thrust",
-            "Thrust that the hull requires, and what the propeller gives at each condition's rate of rotation.",
-        )
-
-    def resistance(which: str, words: str) -> Markup:
-        return chart_html(
-            resistance_chart(data.resistance, which, SMALL_SHEET, knots=knots),
-            f"resistance-{which}",
-            f"{words} {over}; dots: the operating conditions.",
+            "Thrust that the hull requires, and what the propeller gives at each condition's rate of rotation (the "
+            "paper's Figure 9).",
         )
 
     engine = engine_of(data.case.engine)
@@ -331,10 +234,8 @@ def _propulsion(data: ReportData) -> Markup:
             "Brake power over the rate of revolutions; dashed: the engine's layout. Crosses lie outside.",
         )
 
-    charts = pair(_or_why(open_water), _or_why(thrust)) + pair(
-        _or_why(lambda: resistance("total", "Total resistance")), _or_why(lambda: resistance("wave", "Wave resistance"))
-    )
-    return charts if engine is None else charts + _or_why(diagram)
+    charts = pair(figure_or_why(open_water), figure_or_why(thrust))
+    return charts if engine is None else charts + figure_or_why(diagram)
 
 
 def _form(data: ReportData) -> Markup:
@@ -360,7 +261,7 @@ def _form(data: ReportData) -> Markup:
             ),
         )
 
-    return _or_why(both)
+    return figure_or_why(both)
 
 
 def _drivers(data: ReportData) -> Markup:

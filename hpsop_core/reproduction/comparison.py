@@ -2,10 +2,7 @@
 
 from __future__ import annotations
 
-import csv
-import io
 import math
-from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 
 from hpsop_core.case.case import Case, load_case
@@ -13,62 +10,40 @@ from hpsop_core.errors import InputError
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.levels import FAST, LEVEL_NUMBERS
 from hpsop_core.evaluation.propeller_answer import build_propeller, propeller_answer, propeller_variables
-from hpsop_core.evaluation.reference import Reference, reference_for
+from hpsop_core.evaluation.reference import Reference
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.shapes import initial_volume
 from hpsop_core.hydro import cavitation
 from hpsop_core.hydro.friction import ittc57_coefficient
+from hpsop_core.report.csv_table import Cell, Table
+from hpsop_core.report.data import ReportData
 from hpsop_core.reproduction import paper
 from hpsop_core.reproduction.paper import CASE_NAME, PaperDesign, PaperPoint
 from hpsop_core.runs.reader import RunReader
 from hpsop_core.runs.records import DesignRecord
 
-SHOWN = 5
-"""Designs of our front beside the paper's OP1 to OP5."""
-
-Cell = str | float | int | None
 TABLE4_QUANTITIES = ("Rt [kN]", "J [-]", "N [1/min]", "KT [-]", "10KQ [-]", "eta [-]", "T [kN]", "PD [MW]")
+TABLE4_DIGITS = (0, 3, 2, 4, 4, 4, 0, 1)
+"""Decimals of each on a page."""
 
 
-@dataclass(frozen=True)
-class Table:
-    """A table as it stands in a CSV file.
-
-    Attributes:
-        name: of the file, without ``.csv``.
-        comment: what it is; the first lines of the file.
-        header: columns, with their units.
-        rows: cells; None where there is nothing.
-    """
-
-    name: str
-    comment: str
-    header: tuple[str, ...]
-    rows: tuple[tuple[Cell, ...], ...]
-
-    def csv(self) -> str:
-        """The file's text."""
-        stream = io.StringIO()
-        stream.writelines(f"# {line}\n" for line in self.comment.splitlines())
-        writer = csv.writer(stream, lineterminator="\n")
-        writer.writerow(self.header)
-        for row in self.rows:
-            writer.writerow("" if cell is None else f"{cell:.9g}" if isinstance(cell, float) else cell for cell in row)
-        return stream.getvalue()
+def is_of_the_paper(run: RunReader) -> bool:
+    """Whether a run is one of the paper's case as it is shipped; population, generations and seed may differ."""
+    own, stored = load_case(CASE_NAME), run.case.optimization
+    settings = {name: getattr(stored, name) for name in ("population", "generations", "level1_generations", "seed")}
+    return own.replaced("optimization", **settings) == run.case
 
 
 def checked_run(run: RunReader) -> RunReader:
-    """The run, if it is one of the paper's case; population, generations and seed may differ.
+    """The run, if it is one of the paper's case.
 
     Raises:
         InputError: it is a run of another case.
     """
-    own, stored = load_case(CASE_NAME), run.case.optimization
-    settings = {name: getattr(stored, name) for name in ("population", "generations", "level1_generations", "seed")}
-    if own.replaced("optimization", **settings) != run.case:
+    if not is_of_the_paper(run):
         raise InputError(
-            f"{run.path}: holds a run of the case '{run.case.name}', not of '{CASE_NAME}' as it is shipped; "
-            "give such a run, or leave --run away"
+            f"{run.path}: holds a run of the case '{run.case.name}', not of '{CASE_NAME}' as it is shipped; choose "
+            f"another folder, or show this run with --run {run.path}"
         )
     return run
 
@@ -78,20 +53,14 @@ class Reproduction:
     """Everything that is compared.
 
     Attributes:
-        run: of the paper's case.
+        report: a run of the paper's case, as a report of it sees it.
         level: of the last generation (1 while there is none).
         initial: at that level.
-        chosen: (R1 to R5, design) of our front, ascending in f1; fewer where the front is smaller.
-        compromise: of our front; None where it is empty.
-        references: by level; computed where the run has not come so far.
     """
 
-    run: RunReader
+    report: ReportData
     level: int
     initial: DesignRecord
-    chosen: tuple[tuple[str, DesignRecord], ...]
-    compromise: DesignRecord | None
-    references: Mapping[int, Reference]
 
     @classmethod
     def of(cls, run: RunReader) -> Reproduction:
@@ -99,49 +68,42 @@ class Reproduction:
 
         Raises:
             InputError: not a run of the paper's case, or one that has evaluated nothing.
-            SolverFailure: the initial design cannot be computed at a level.
         """
-        checked_run(run)
-        last = run.generation()
-        level = 1 if last is None else last.level
-        front = run.designs(last.front) if last is not None else ()
-        compromise = None
-        if last is not None and last.compromise is not None:
-            compromise = next(record for record in front if record.id == last.compromise)
-        stored = {number: run.reference(number) for number in LEVEL_NUMBERS}
-        references = {
-            number: reference_for(run.case, number) if data is None else Reference.from_dict(data)
-            for number, data in stored.items()
-        }
-        return cls(run, level, run.initial(level), _spread_over(front, compromise), compromise, references)
+        report = ReportData.of(checked_run(run))
+        level = 1 if report.level is None else report.level
+        return cls(report, level, run.initial(level))
+
+    @property
+    def run(self) -> RunReader:
+        """Of the paper's case."""
+        return self.report.run
 
     @property
     def case(self) -> Case:
         """The paper's."""
-        return self.run.case
+        return self.report.case
+
+    @property
+    def chosen(self) -> tuple[tuple[str, DesignRecord], ...]:
+        """(R1 to R5, design) of our front, ascending in f1; fewer where the front is smaller."""
+        return self.report.spread
+
+    @property
+    def compromise(self) -> DesignRecord | None:
+        """Of our front; None where it is empty."""
+        return self.report.compromise
+
+    def reference(self, level: int) -> Reference:
+        """What normalises at a level.
+
+        Raises:
+            SolverFailure: the initial design cannot be computed there.
+        """
+        return self.report.reference(level)
 
     def designs(self) -> list[tuple[str, Evaluation]]:
         """Our initial design and those chosen, each with its name."""
         return [("initial", self.initial.evaluation), *((name, item.evaluation) for name, item in self.chosen)]
-
-
-def _spread_over(
-    front: Sequence[DesignRecord], compromise: DesignRecord | None
-) -> tuple[tuple[str, DesignRecord], ...]:
-    """At most SHOWN designs evenly over the front's ranks, both ends and the compromise among them."""
-    if not front:
-        return ()
-    last = len(front) - 1
-    places = {round(last * part / (SHOWN - 1)) for part in range(SHOWN)}
-    if compromise is not None:
-        at = next(place for place, record in enumerate(front) if record.id == compromise.id)
-        if at not in places:
-            # The nearest inner place gives way.
-            inner = places - {0, last}
-            if inner:
-                places.remove(min(inner, key=lambda place: abs(place - at)))
-            places.add(at)
-    return tuple((f"R{number}", front[place]) for number, place in enumerate(sorted(places), start=1))
 
 
 # -- the paper's tables beside ours --------------------------------------------------------------------------------
@@ -268,7 +230,7 @@ def table4(data: Reproduction) -> Table:
 def evaluated(data: Reproduction, design: PaperDesign, level: int) -> Evaluation:
     """A design of the paper's Table 3 at a level of ours."""
     variables = design.variables(data.case, initial_volume(data.case))
-    return evaluate(data.case, variables, level, data.references[level])
+    return evaluate(data.case, variables, level, data.reference(level))
 
 
 def paper_designs(data: Reproduction) -> Table:

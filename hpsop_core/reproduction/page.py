@@ -4,32 +4,24 @@ from __future__ import annotations
 
 import dataclasses
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 
 from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.evaluation.levels import FAST, level_of
-from hpsop_core.markup import Markup, fill, joined, one_line, symbol_html
+from hpsop_core.markup import Markup, fill, joined, one_line
 from hpsop_core.quantities import change_text, number_text
-from hpsop_core.report.html_page import Section, Words, bullets, page, paragraph, table
+from hpsop_core.report.csv_table import Cell, Table, caption_html, cell_text, heading_html, table_html
+from hpsop_core.report.html_page import Section, Words, bullets, page, pair, paragraph, table
 from hpsop_core.report.tables import run_facts
 from hpsop_core.reproduction import paper
 from hpsop_core.reproduction.comparison import (
+    TABLE4_DIGITS,
     TABLE4_QUANTITIES,
-    Cell,
     Reproduction,
-    Table,
     thrust_with_absolute_pitch,
 )
-from hpsop_core.reproduction.figures import figure5, figure8, figure9, figures67
+from hpsop_core.reproduction.figures import figures
 from hpsop_core.version import __version__
-
-_DIGITS = {
-    "L": 2, "B": 2, "d": 2, "CB": 3, "Z": 0, "D": 2, "P/D": 2, "f1": 3, "f2": 3, "J": 3, "KT": 4, "10KQ": 4, "eta": 4,
-    "Fn": 2, "weight": 2, "lower": 2, "upper": 2, "off": 1, "Rt": 0, "T": 0, "PD": 1, "PE": 1, "PD1": 1, "PD2": 1,
-    "V": 2, "w": 3, "t": 3, "T/Rt": 3, "10^4": 1, "ours": 3,
-}  # fmt: skip
-_SYMBOLS = {"f1": "f_1", "f2": "f_2", "KT": "K_T", "10KQ": "10K_Q", "CB": "C_B", "eta": "η", "Rt": "R_T", "PD": "P_D",
-            "PD1": "P_D1", "PD2": "P_D2", "PE": "P_E", "T/Rt": "T/R_T"}  # fmt: skip
 
 
 def page_html(data: Reproduction, made: Sequence[Table]) -> str:
@@ -43,15 +35,18 @@ def page_html(data: Reproduction, made: Sequence[Table]) -> str:
         SolverFailure: a curve cannot be computed.
     """
     by_name = {item.name: item for item in made}
+    drawn = {number: figure.html() for number, figure in figures(data).items()}
+    setup = table_html(by_name["table1"]) + _table2(by_name["table2"])
+    resistance = pair(drawn[6], drawn[7]) + table_html(by_name["resistance_audit"])
     sections = [
-        Section("verdict", "What agrees, and what cannot", _verdict(data, by_name)),
-        Section("setup", "Tables 1 and 2: conditions, bounds", _html(by_name["table1"]) + _table2(by_name["table2"])),
+        Section("verdict", "What agrees, and what cannot", verdict_html(data, by_name)),
+        Section("setup", "Tables 1 and 2: conditions, bounds", setup),
         Section("table3", "Table 3: initial and optimal designs", _table3(data, by_name)),
         Section("table4", "Table 4: operating points", _table4(by_name["table4"])),
-        Section("figure5", "Figure 5: evolution of the fronts", figure5(data)),
-        Section("figures67", "Figures 6 and 7: resistance", figures67(data) + _html(by_name["resistance_audit"])),
-        Section("figure8", "Figure 8: open water", figure8(data) + _html(by_name["propeller_at_paper_j"])),
-        Section("figure9", "Figure 9: thrust", figure9(data) + _html(by_name["table4_audit"], wide=True)),
+        Section("figure5", "Figure 5: evolution of the fronts", drawn[5]),
+        Section("figures67", "Figures 6 and 7: resistance", resistance),
+        Section("figure8", "Figure 8: open water", drawn[8] + table_html(by_name["propeller_at_paper_j"])),
+        Section("figure9", "Figure 9: thrust", drawn[9] + table_html(by_name["table4_audit"], wide=True)),
         Section("run", "The run", run_facts(data.run.summary(), len(data.run.failures()))),
     ]
     footer = f"hpsop {__version__}, made {time.strftime('%Y-%m-%d %H:%M')}"
@@ -98,7 +93,13 @@ def _head(data: Reproduction) -> Markup:
 # -- words ---------------------------------------------------------------------------------------------------------
 
 
-def _verdict(data: Reproduction, by_name: dict[str, Table]) -> Markup:
+def verdict_html(data: Reproduction, by_name: Mapping[str, Table]) -> Markup:
+    """What agrees, and what cannot be reproduced, with the numbers.
+
+    Args:
+        data: what is compared.
+        by_name: ``comparison.tables`` of it, by their names.
+    """
     audit = by_name["table4_audit"]
     ratio = _column(audit, "T/Rt [-]")
     deduction = _column(audit, "t implied [-]")
@@ -262,37 +263,6 @@ def _off(made: Table, design: str, quantity: str) -> str:
 # -- tables --------------------------------------------------------------------------------------------------------
 
 
-def _digits(column: str) -> int:
-    return 1 if " off " in column else _DIGITS.get(column.split(" ")[0], 3)
-
-
-def _cell(value: Cell, digits: int) -> str:
-    if value is None:
-        return "–"
-    return value if isinstance(value, str) else number_text(float(value), digits)
-
-
-def _heading(column: str, between: str = "<br>") -> Markup:
-    words, _, unit = column.partition(" [")
-    first, _, rest = words.partition(" ")
-    name = fill("{} {}", symbol_html(_SYMBOLS.get(first, first)), rest)
-    if words.startswith("10^4 Cw"):
-        name = fill("10<sup>4</sup> C<sub>W</sub>{}", words.removeprefix("10^4 Cw"))
-    shown = unit.rstrip("]").replace("-", "–")
-    return name + (fill("{}<span class=unit>[{}]</span>", Markup(between), shown) if unit else "")
-
-
-def _caption(made: Table) -> Markup:
-    return fill("{} <span class=unit>({}.csv)</span>", one_line(made.comment), made.name)
-
-
-def _html(made: Table, wide: bool = False, marked: Sequence[int] = ()) -> Markup:
-    digits = [_digits(column) for column in made.header]
-    rows = [[_cell(value, places) for value, places in zip(row, digits, strict=True)] for row in made.rows]
-    header = [_heading(column) for column in made.header]
-    return table(header, rows, caption=_caption(made), wide=wide, marked=marked)
-
-
 def _table2(made: Table) -> Markup:
     rows: list[tuple[Cell, ...]] = []
     for name, *limits in made.rows:
@@ -300,7 +270,7 @@ def _table2(made: Table) -> Markup:
         shown = [f"{value:.0f}" for value in limits] if name == "blade_count" else limits
         variable = VARIABLE_TABLE[str(name)]
         rows.append((f"{variable.label} [{variable.unit or '–'}]", *shown))
-    return _html(dataclasses.replace(made, rows=tuple(rows)))
+    return table_html(dataclasses.replace(made, rows=tuple(rows)))
 
 
 def _table3(data: Reproduction, by_name: dict[str, Table]) -> Markup:
@@ -314,20 +284,18 @@ def _table3(data: Reproduction, by_name: dict[str, Table]) -> Markup:
         "<h3>The paper's designs with our physics</h3><p>If only the search differed, the paper's designs would have "
         "the paper's objectives here.</p>"
     )
-    return words + _html(made, marked=ours) + again + _html(by_name["paper_designs"], wide=True)
-
-
-_TABLE4_DIGITS = dict(zip(TABLE4_QUANTITIES, (0, 3, 2, 4, 4, 4, 0, 1), strict=True))
+    return words + table_html(made, marked=ours) + again + table_html(by_name["paper_designs"], wide=True)
 
 
 def _table4(made: Table) -> Markup:
     rows: list[list[Words]] = []
+    digits_of = dict(zip(TABLE4_QUANTITIES, TABLE4_DIGITS, strict=True))
     group = ("", 0.0)
     for design, froude, quantity, theirs, mine, ratio in made.rows:
         if (design, froude) != group:
             group = (str(design), float(froude or 0.0))
             rows.append([f"{design} design, Fn {number_text(group[1], 2)}"])
-        digits = _TABLE4_DIGITS[str(quantity)]
-        name = _heading(str(quantity), " ")
-        rows.append([name, _cell(theirs, digits), _cell(mine, digits), _cell(ratio, 2)])
-    return table(["", "paper", "ours", "ours / paper"], rows, caption=_caption(made))
+        digits = digits_of[str(quantity)]
+        name = heading_html(str(quantity), " ")
+        rows.append([name, cell_text(theirs, digits), cell_text(mine, digits), cell_text(ratio, 2)])
+    return table(["", "paper", "ours", "ours / paper"], rows, caption=caption_html(made))

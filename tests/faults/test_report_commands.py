@@ -87,26 +87,25 @@ def test_no_run_there(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> Non
     assert not (tmp_path / "r.html").exists()
 
 
-def test_reproduce_takes_runs_of_the_papers_case_alone(
+def test_reproduce_goes_on_with_runs_of_the_papers_case_alone(
     file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    words = ["reproduce", "--to", str(tmp_path / "out"), "--run", str(file)]
-    assert "of the case 'two-speeds', not of 'dtc-p4119-paper'" in refused(words, capsys)
-    assert "leave --workers or --run away" in refused([*words, "--workers", "2"], capsys)
+    words = ["reproduce", "--to", str(tmp_path / "out"), "--run", str(file), "--workers", "2"]
+    assert "leave --workers or --run away" in refused(words, capsys)
+    # Another run that lies in the folder under the very name.
     changed = load_case("dtc-p4119-paper").replaced("constants", form_factor=0.094)
-    altered = tmp_path / "altered.hpsop"
-    RunController(altered, changed, workers=1).close()
-    told = refused(["reproduce", "--to", str(tmp_path / "out"), "--run", str(altered)], capsys)
-    assert "not of 'dtc-p4119-paper' as it is shipped" in told
-    # Also where the other run lies in the folder under the very name.
     folder = tmp_path / "folder"
     folder.mkdir()
     RunController(folder / "dtc-p4119-paper.hpsop", changed, workers=1).close()
-    assert "as it is shipped" in refused(["reproduce", "--to", str(folder)], capsys)
+    told = refused(["reproduce", "--to", str(folder)], capsys)
+    assert "as it is shipped" in told and "with --run" in told
 
 
-def test_reproduce_of_a_run_that_has_evaluated_nothing(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
+def test_reproduce_of_a_run_that_has_evaluated_nothing(
+    file: Path, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
     empty = tmp_path / "empty.hpsop"
     RunController(empty, load_case("dtc-p4119-paper"), workers=1).close()
-    words = ["reproduce", "--to", str(tmp_path / "out"), "--run", str(empty)]
-    assert "its initial design is not evaluated yet" in refused(words, capsys)
+    for run in (empty, file):
+        words = ["reproduce", "--to", str(tmp_path / "out"), "--run", str(run)]
+        assert "its initial design is not evaluated yet" in refused(words, capsys)

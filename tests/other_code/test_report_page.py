@@ -21,7 +21,9 @@ from hpsop_core.evaluation.curves import hull_lines, resistance_points, thrust_c
 from hpsop_core.quantities import all_quantities, condition_names, number_text
 from hpsop_core.report.data import ReportData
 from hpsop_core.report.looks import COMPROMISE_LOOK, INITIAL_LOOK, SHEET
+from hpsop_core.report.paper_figures import evolution_figure, open_water_figure, resistance_figure, thrust_figure
 from hpsop_core.report.report import report_html
+from hpsop_core.report.search import archive_clouds, pareto_figure
 from hpsop_core.report.tables import failure_table
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.reader import RunReader, open_run
@@ -29,9 +31,10 @@ from hpsop_core.runs.records import Failure
 from tests.two_speeds import TWO_SPEEDS
 
 TITLE = "<script>alert('Hull & \"screw\"')</script> $\\frac{1}{2 d·Ω"
-SECTIONS = ["result", "pareto", "propulsion", "form", "drivers", "trust", "assumptions", "front", "run", "failures"]
-FIGURES = ["pareto", "convergence", "open-water", "thrust", "resistance-total", "resistance-wave", "body-plan",
-           "sectional-area"]  # fmt: skip
+SECTIONS = ["result", "pareto", "spread", "propulsion", "form", "drivers", "trust", "assumptions", "front", "run",
+            "failures"]  # fmt: skip
+FIGURES = ["pareto", "convergence", "evolution", "resistance-wave", "resistance-total", "open-water-spread",
+           "open-water", "thrust", "body-plan", "sectional-area"]  # fmt: skip
 
 
 def quick_case() -> Case:
@@ -110,6 +113,65 @@ def test_the_front_is_whole(page: Page, run: RunReader) -> None:
     assert any(row[0] == compromise and "compromise" in row[1] for row in rows[1:])
 
 
+def test_the_papers_table_3_shows_the_front(page: Page, run: RunReader) -> None:
+    data = ReportData.of(run)
+    front = [record.id for record in run.front()]
+    named = dict(data.compared())
+    ids = [record.id for _, record in data.spread]
+    # Both ends and the compromise are among them, in the front's order, five or all there are.
+    assert len(ids) == min(5, len(front)) and ids[0] == front[0] and ids[-1] == front[-1]
+    assert run.generation().compromise in ids and ids == sorted(ids, key=front.index)
+    table = page.tables["spread"][0]
+    heads = [" ".join(cell.split()) for cell in table[0]]
+    assert [row[0] for row in table[1:]] == list(named)
+    assert sum("compromise" in row[0] for row in table) == 1
+    for row, record in zip(table[1:], named.values(), strict=True):
+        cells = dict(zip(heads, row, strict=True))
+        evaluation = record.evaluation
+        for head, value, digits in (
+            ("number", record.id, 0),
+            ("LPP [m]", evaluation.hull.length, 2),
+            ("CB [–]", evaluation.hull.block_coefficient, 4),
+            ("D [m]", evaluation.variables.diameter, 2),
+            ("Z [–]", evaluation.variables.blade_count, 0),
+            ("f₁ [–]", evaluation.objectives["f1"], 4),
+            ("f₂ [–]", evaluation.objectives["f2"], 4),
+        ):
+            assert cells[head] == number_text(value, digits), head
+
+
+def test_the_papers_table_4_shows_the_operating_points(page: Page, run: RunReader) -> None:
+    rows = page.tables["spread"][1][1:]
+    compared = [("initial", run.initial(2)), ("compromise", run.design("compromise"))]
+    expected = [(name, c) for name, record in compared for c in record.evaluation.conditions]
+    assert [row[0] for row in rows] == [name for name, _ in expected]
+    for row, (_, c) in zip(rows, expected, strict=True):
+        told = [(c.froude_number, 4), (c.speed / 0.514444, 2), (1e-3 * c.total_resistance, 0),
+                (c.advance_coefficient, 4), (c.rotation_rate_rpm, 2), (c.thrust_coefficient, 4),
+                (10.0 * c.torque_coefficient, 4), (c.open_water_efficiency, 4), (1e-3 * c.thrust, 0),
+                (1e-6 * c.delivered_power, 2)]  # fmt: skip
+        assert row[1:] == [number_text(value, digits) for value, digits in told]
+
+
+def test_the_papers_figures_show_the_run(run: RunReader) -> None:
+    data = ReportData.of(run)
+    last = run.generation()
+    front = [[record.evaluation.objectives[name] for name in ("f1", "f2")] for record in run.front()]
+    plot = evolution_figure(data)
+    assert np.transpose(drawn(plot, f"generation {last.number}, level 2")) == pytest.approx(np.array(front))
+    names = [name for name, record in data.compared() if record.evaluation.ok]
+    for which in ("wave", "total"):
+        plot = resistance_figure(data, which)
+        for name, (_, record) in zip(names, data.compared(), strict=True):
+            place, force = drawn(plot, name)
+            for condition in record.evaluation.conditions:
+                # Speeds are fixed: the axis is in knots.
+                at = int(np.argmin(np.abs(np.array(place) - condition.speed / 0.514444)))
+                assert force[at] == pytest.approx(1e-6 * getattr(condition, f"{which}_resistance"), rel=1e-8)
+    assert {item.name.partition(", ")[2] for item in open_water_figure(data).series} >= set(names)
+    assert {item.name for item in thrust_figure(data).series} >= {"required, initial", "required, compromise"}
+
+
 def test_assumptions_and_facts_are_the_cases_and_the_runs(page: Page, run: RunReader) -> None:
     words = " ".join(page.words["assumptions"].split())
     for told in ("(shift)", "(fixed)", "has the wave coefficients stated in the case", "at both levels",
@@ -133,10 +195,8 @@ def drawn(plot: Plot, name: str) -> tuple[list[float], list[float]]:
 
 
 def test_pareto_and_convergence_show_the_run(run: RunReader) -> None:
-    from hpsop_core.report.report import _clouds, _pareto
-
     data = ReportData.of(run)
-    clouds, total = _clouds(run)
+    clouds, total = archive_clouds(run)
     computed = [point for point in run.archive() if point.objectives is not None]
     assert total == sum(len(cloud.points) for cloud in clouds) == len(computed)
     generations = data.generations
@@ -154,7 +214,7 @@ def test_pareto_and_convergence_show_the_run(run: RunReader) -> None:
         assert drawn(plot, f"level {level}") == (numbers, pytest.approx([item.hypervolume for item in own]))
         shares = [100.0 * item.feasible_share for item in own]
         assert drawn(plot, f"feasible, level {level}") == (numbers, pytest.approx(shares))
-    plot = _pareto(data, clouds)
+    plot = pareto_figure(data, clouds)
     for level in (1, 2):
         own = [point.objectives for point in computed if point.feasible and point.level == level]
         if own:

@@ -8,12 +8,13 @@ from pathlib import Path
 import pytest
 from html_reading import Page, check
 
-from hpsop_core import load_case
+from hpsop_core import load_case, optimize
 from hpsop_core.cli.main import main
 from hpsop_core.reproduction import figures, paper
 from hpsop_core.reproduction.comparison import Reproduction
 from hpsop_core.reproduction.reproduce import write_reproduction
 from hpsop_core.runs.reader import RunReader, open_run
+from tests.two_speeds import TWO_SPEEDS
 
 SECTIONS = ["verdict", "setup", "table3", "table4", "figure5", "figures67", "figure8", "figure9", "run"]
 
@@ -101,17 +102,8 @@ def test_the_printed_resistance_lies_between_our_levels(folder: Path) -> None:
     assert float(rows[1]["10^4 Cw paper [-]"]) == pytest.approx(33.6, abs=0.15)
 
 
-def test_the_papers_points_are_in_the_figures(run: RunReader, monkeypatch: pytest.MonkeyPatch) -> None:
-    drawn = {}
-
-    def keep(plot, name: str, caption: str) -> str:
-        drawn[name] = plot
-        return ""
-
-    monkeypatch.setattr(figures, "chart_html", keep)
-    data = Reproduction.of(run)
-    for make in (figures.figure5, figures.figures67, figures.figure8, figures.figure9):
-        make(data)
+def test_the_papers_points_are_in_the_figures(run: RunReader) -> None:
+    drawn = {f"figure-{number}": figure.plot for number, figure in figures.figures(Reproduction.of(run)).items()}
     series = {name: {item.name: (list(item.x), list(item.y)) for item in plot.series} for name, plot in drawn.items()}
     assert series["figure-5"]["paper, Table 3"] == (
         [1.0, 0.77, 0.67, 0.68, 0.74, 0.70], [1.0, 0.910, 0.933, 0.922, 0.915, 0.916]
@@ -138,6 +130,37 @@ def test_called_again_it_goes_on_and_replaces_its_files_only(
     assert (folder / "mine.txt").read_text() == "mine" and "0.22" in (folder / "table1.csv").read_text()
     listed = {Path(line.split("  ")[0]).name for line in capsys.readouterr().out.splitlines()}
     assert listed == {file.name for file in folder.iterdir() if file.suffix in (".html", ".csv")}
+
+
+def test_a_run_of_another_case_has_the_papers_tables_and_figures(tmp_path: Path) -> None:
+    case = load_case(TWO_SPEEDS).replaced(
+        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
+    )
+    own = optimize(case, tmp_path / "own.hpsop", generations=1, level1_generations=1, population=8, seed=2, workers=1)
+    target = tmp_path / "out"
+    assert main(["reproduce", "--to", str(target), "--run", str(own.path)]) == 0
+    source = (target / "reproduction.html").read_text()
+    page = Page().read(source)
+    check(page, source)
+    assert page.sections == [name for name in SECTIONS if name != "verdict"]
+    assert page.figures == [f"figure-figure-{number}" for number in (5, 6, 7, 8, 9)]
+    # The paper's numbers are of another ship: not one of its designs is shown.
+    assert "OP3" not in source and "ours" not in page.words["table3"]
+    rows = rows_of(target, "table3")
+    assert [row["design"].removesuffix(", compromise") for row in rows][:2] == ["initial", "R1"]
+    assert float(rows[0]["f₁ [-]"]) == 1.0
+    by_id = {str(record.id): record.evaluation for record in (own.initial(1), *own.front())}
+    for row in rows:
+        assert float(row["f₂ [-]"]) == pytest.approx(by_id[row["number"]].objectives["f2"], rel=1e-8)
+        assert float(row["D [m]"]) == pytest.approx(by_id[row["number"]].variables.diameter, rel=1e-8)
+    points = rows_of(target, "table4")
+    conditions = own.initial(1).evaluation.conditions
+    for row, condition in zip(points, conditions, strict=False):
+        assert float(row["Rt [kN]"]) == pytest.approx(1e-3 * condition.total_resistance, rel=1e-8)
+    bounds = {row["variable"]: row for row in rows_of(target, "table2")}
+    assert bounds["blades [-]"]["upper limit"] == str(case.bounds.as_dict()["blade_count"][1])
+    weights = [float(row["weight [-]"]) for row in rows_of(target, "table1")]
+    assert weights == list(case.conditions.weights)
 
 
 def test_a_run_that_has_only_begun_level_1(run: RunReader, tmp_path: Path) -> None:
