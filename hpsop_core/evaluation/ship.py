@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -134,10 +135,12 @@ def check_engine(case: Case, initial: DesignNumbers) -> None:
     load, speed = max(loads)
     rating = case.engine.maximum_continuous_rating
     if rating is not None and load > _HOPELESS:
+        needed = 1e-6 * load * rating
+        digit = 10.0 ** (math.floor(math.log10(needed)) - 1)
+        enough = digit * math.ceil(needed / digit)  # rounded up: what is said to be enough is
         raise InputError(
             f"engine: maximum_continuous_rating {rating:g} W is smaller than any design needs: the initial one takes "
-            f"{1e-6 * load * rating:.4g} MW at {speed / KNOT:.2f} kn; state at least {load * rating:.2g} W or "
-            "lower the speeds"
+            f"{needed:.4g} MW at {speed / KNOT:.2f} kn; state at least {1e6 * enough:.2g} W or lower the speeds"
         )
 
 

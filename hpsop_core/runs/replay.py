@@ -415,10 +415,7 @@ class RunDriver:
                 done, text = future.result()
                 if done:
                     return str(text)
-                raise InputError(
-                    f"{self._case.name}: the initial design cannot be computed at level {level} ({text}); "
-                    "change [initial]"
-                )
+                raise InputError(f"{self._case.name}: {text}, and choose another run file")
             except (concurrent.futures.BrokenExecutor, concurrent.futures.CancelledError):
                 # Killed by the system, maybe, and not by the design: the same again decides.
                 if self._control.stopped:

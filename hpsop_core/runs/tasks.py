@@ -20,7 +20,7 @@ import threadpoolctl
 
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
-from hpsop_core.errors import SolverFailure
+from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.result import Evaluation, Failed
 from hpsop_core.runs.records import json_text
 
@@ -115,13 +115,15 @@ def failure_text(case: Case, variables: DesignVariables, level: int, stage: str,
 
 
 def reference_task(reference_for: ReferenceFunction, case: Case, level: int) -> tuple[bool, str]:
-    """Compute a level's reference in this process: (True, JSON text) or (False, reason)."""
+    """Compute a level's reference in this process: (True, JSON text) or (False, what is wrong and what to do)."""
     pin_threads()
     try:
         reference = reference_for(case, level)
         return True, json_text(None if reference is None else reference.as_dict())
+    except InputError as error:
+        return False, str(error)
     except Exception as error:  # noqa: BLE001 - told to the user as the reason why the run cannot start
-        return False, _one_line(error)
+        return False, f"the initial design cannot be computed at level {level} ({_one_line(error)}); change [initial]"
 
 
 def presence_task(seconds: float) -> int:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import math
+import re
 from pathlib import Path
 
 import numpy as np
@@ -204,7 +205,11 @@ def test_an_engine_smaller_than_any_design_needs_is_refused_in_one_line() -> Non
         evaluate(CASE.replaced("engine", maximum_continuous_rating=15_000.0))
     text = str(refusal.value)
     assert text.startswith("engine: maximum_continuous_rating 15000 W is smaller than any design needs")
-    assert "state at least" in text and "\n" not in text
+    assert "\n" not in text
+    # What it says to be enough is not refused again and carries the initial design.
+    enough = float(re.search(r"state at least ([\d.e+]+) W", text)[1])
+    again = evaluate(CASE.replaced("engine", maximum_continuous_rating=enough))
+    assert max(condition.engine_load for condition in again.conditions) <= 1.0
 
 
 @pytest.mark.parametrize(

@@ -15,7 +15,7 @@ from typing import Any
 from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import HullResult, PropellerResult
 from hpsop_core.case.variables import VARIABLE_NAMES, DesignVariables
-from hpsop_core.errors import SolverFailure
+from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.result import Evaluation, Ok, OpenWaterCurve, evaluation_from_dict
 from hpsop_core.runs.tasks import Physics
 
@@ -58,6 +58,16 @@ def no_reference(case: Case, level: int) -> None:
 
 def no_reference_from_dict(data: object) -> None:
     """Never called: there is none."""
+
+
+def refused_reference(case: Case, level: int) -> None:
+    """A case that cannot be: what a person stated is at fault."""
+    raise InputError("engine: too small; state more")
+
+
+def broken_reference(case: Case, level: int) -> None:
+    """A defect of the program."""
+    raise ZeroDivisionError("a defect")
 
 
 def physics(function: object = evaluate) -> Physics:

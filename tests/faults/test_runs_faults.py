@@ -19,6 +19,7 @@ from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController, optimize
 from hpsop_core.runs.reader import RunReader, open_run
 from hpsop_core.runs.store import RunStore
+from hpsop_core.runs.tasks import reference_task
 from hpsop_core.runs.workers import WorkersUnavailableError
 
 HERE = Path(__file__).resolve().parent
@@ -69,6 +70,15 @@ def test_exceptions_nans_and_exits_are_recorded_and_the_run_completes(tmp_path: 
         assert (failure.stage, failure.reason) == (stage, reason)
     # The file holds nothing that is not a number.
     assert "NaN" not in str(content(tmp_path / "run.hpsop")) and "Infinity" not in str(content(tmp_path / "run.hpsop"))
+
+
+def test_a_case_that_cannot_be_is_refused_with_its_own_remedy() -> None:
+    # What a worker sends back: it is told to a person as it is.
+    assert reference_task(quick_physics.refused_reference, small_case(), 1) == (False, "engine: too small; state more")
+    done, told = reference_task(quick_physics.broken_reference, small_case(), 1)
+    assert not done and told == (
+        "the initial design cannot be computed at level 1 (ZeroDivisionError: a defect); change [initial]"
+    )
 
 
 def test_workers_that_die_are_replaced_and_only_the_guilty_design_fails(tmp_path: Path) -> None:
