@@ -352,6 +352,11 @@ class RunKeeper:
             elapsed=elapsed,
             predictions=self._predictions,
             opening=self.opening,
+            errors={
+                record.id: record.evaluation.errors
+                for record in reader.designs(newest.front if newest is not None else ())
+                if record.evaluation.ok and record.evaluation.errors
+            },
         )
         return self._picture
 
