@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from hpsop_core.case.case import KNOT, Case
+from hpsop_core.case.declared_variable import Variable
 from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.evaluation.result import Evaluation
@@ -32,8 +33,7 @@ def bounds_table(case: Case) -> Table:
     for name, limits in case.bounds.as_dict().items():
         item = VARIABLE_TABLE[name]
         values = (*limits, getattr(case.initial.variables, name))
-        # Blades are counted.
-        rows.append((f"{item.label} [{item.unit or '-'}]", *(_counted(item.scale, value) for value in values)))
+        rows.append((f"{item.label} [{item.unit or '-'}]", *(_shown(item, value) for value in values)))
     return Table(
         "table2",
         "Limits of the design variables (the paper's Table 2); where both are the same the variable is not free.",
@@ -42,8 +42,10 @@ def bounds_table(case: Case) -> Table:
     )
 
 
-def _counted(scale: float, value: float | int) -> float | int:
-    return value if isinstance(value, int) else scale * float(value)
+def _shown(item: Variable, value: float) -> Cell:
+    """A number in the variable's unit; blades are counted."""
+    typed = item.typed(value)
+    return typed if isinstance(typed, int) else item.shown(typed)
 
 
 def designs_table(data: ReportData) -> Table:
