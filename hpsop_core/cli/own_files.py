@@ -11,6 +11,7 @@ from hpsop_core.case.fields import FieldRule
 from hpsop_core.cli.arguments import add_json, checked_option, print_json
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.hull.input.options import UNITS, Axes, ReadOptions
+from hpsop_core.writing import refuse_to_replace, write_whole
 
 LENGTH_RULE = FieldRule("number", "", "m", 0.1, 600.0)
 DRAFT_RULE = FieldRule("number", "", "m", 0.005, 40.0)
@@ -49,7 +50,7 @@ def add_parsers(commands: Any) -> None:
     add_reading(hull)
     hull.add_argument("--picture", metavar="OUT.svg|png", help="body plan, profile and sectional areas")
     hull.add_argument("--case", metavar="OUT.toml", help="a case file for this ship")
-    hull.add_argument("--force", action="store_true", help="replace a case file that is there")
+    hull.add_argument("--force", action="store_true", help="replace a picture or a case file that is there")
     add_json(hull)
     hull.set_defaults(handler=_hull)
 
@@ -57,6 +58,7 @@ def add_parsers(commands: Any) -> None:
     propeller.add_argument("file", metavar="FILE", help="r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c under any names in use")
     propeller.add_argument("--blades", metavar="Z", required=True, help="number of blades")
     propeller.add_argument("--picture", metavar="OUT.svg|png", help="outline, sections, pitch and thickness")
+    propeller.add_argument("--force", action="store_true", help="replace a picture that is there")
     add_json(propeller)
     propeller.set_defaults(handler=_propeller)
 
@@ -65,10 +67,10 @@ def _hull(arguments: argparse.Namespace) -> int:
     from hpsop_core.geometry.hull.input import read_hull
 
     options = read_options(arguments)
-    picture = _picture_path(arguments.picture)
+    picture = _picture_path(arguments.picture, arguments.force)
     case_path = None if arguments.case is None else Path(arguments.case)
-    if case_path is not None and os.path.exists(case_path) and not arguments.force:
-        raise InputError(f"{case_path}: is there already; add --force to replace it")
+    if case_path is not None:
+        refuse_to_replace(case_path, arguments.force)
     file = read_hull(arguments.file, options)
     written = []
     if picture is not None:
@@ -80,11 +82,7 @@ def _hull(arguments: argparse.Namespace) -> int:
         from hpsop_core.case.ready_case import ready_case
 
         path = os.path.relpath(Path(arguments.file).resolve(), case_path.resolve().parent)
-        content = ready_case(file, path, options).to_toml()
-        try:
-            case_path.write_text(content, encoding="utf-8")
-        except OSError as problem:
-            raise InputError(f"{case_path}: cannot be written ({problem.strerror or problem})") from problem
+        write_whole(case_path, ready_case(file, path, options).to_toml())
         written.append(case_path)
     if arguments.json:
         print_json({**file.understood.as_dict(), "written": [str(path) for path in written]})
@@ -97,7 +95,7 @@ def _propeller(arguments: argparse.Namespace) -> int:
     from hpsop_core.geometry.propeller.input import read_propeller
 
     blades = int(checked_option(arguments.blades, FieldRule("integer", "", "", 2, 7), "--blades") or 0)
-    picture = _picture_path(arguments.picture)
+    picture = _picture_path(arguments.picture, arguments.force)
     told = read_propeller(arguments.file, blades)
     if picture is not None:
         from hpsop_core.charts.own_files import propeller_sheet
@@ -110,13 +108,14 @@ def _propeller(arguments: argparse.Namespace) -> int:
     return 0
 
 
-def _picture_path(word: str | None) -> Path | None:
-    """Where the picture goes; its ending is checked before anything is read."""
+def _picture_path(word: str | None, force: bool) -> Path | None:
+    """Where the picture goes; its ending, and that nothing is lost, is checked before anything is read."""
     if word is None:
         return None
     path = Path(word)
     if path.suffix.lower() not in (".svg", ".png"):
         raise InputError(f"--picture {word}: a picture ends in .svg or .png")
+    refuse_to_replace(path, force)
     return path
 
 
@@ -128,8 +127,4 @@ def _write_picture(svg: str, path: Path) -> None:
     """
     from hpsop_core.charts.raster import png_of
 
-    content = svg.encode("utf-8") if path.suffix.lower() == ".svg" else png_of(svg)
-    try:
-        path.write_bytes(content)
-    except OSError as problem:
-        raise InputError(f"{path}: cannot be written ({problem.strerror or problem})") from problem
+    write_whole(path, svg if path.suffix.lower() == ".svg" else png_of(svg))

@@ -5,16 +5,12 @@ A string is text and escaped, ``Markup`` is not (see ``hpsop_core.markup``); not
 
 from __future__ import annotations
 
-import contextlib
-import os
-import tempfile
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from pathlib import Path
 
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.style import PRINT, style_sheet
-from hpsop_core.errors import InputError, SolverFailure
+from hpsop_core.errors import SolverFailure
 from hpsop_core.markup import Markup, fill, joined, one_line, xml_text
 
 _STYLE = """
@@ -224,32 +220,3 @@ def page(title: str, head: Words, sections: Sequence[Section], footer: str) -> s
         footer=one_line(footer),
     )
     return xml_text(document)
-
-
-def write_whole(path: Path, content: str) -> None:
-    """Write a text file so that it appears whole or not at all.
-
-    Raises:
-        InputError: it cannot be written there.
-    """
-    try:
-        path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=".hpsop-", suffix=path.suffix, dir=path.parent)
-        try:
-            with os.fdopen(handle, "w", encoding="utf-8") as stream:
-                stream.write(content)
-            os.chmod(name, 0o666 & ~_umask())
-            os.replace(name, path)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                os.unlink(name)
-            raise
-    except OSError as error:
-        raise InputError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
-
-
-def _umask() -> int:
-    # There is no way to ask without setting.
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask

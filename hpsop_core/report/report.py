@@ -27,7 +27,6 @@ from hpsop_core.report.html_page import (
     page,
     pair,
     paragraph,
-    write_whole,
 )
 from hpsop_core.report.looks import SHEET, SMALL_SHEET
 from hpsop_core.report.paper_figures import thrust_figure
@@ -43,6 +42,7 @@ from hpsop_core.report.words import assumptions, trust
 from hpsop_core.runs.reader import RunReader
 from hpsop_core.runs.records import DesignRecord, front_families
 from hpsop_core.version import __version__
+from hpsop_core.writing import refuse_to_replace, write_whole
 
 
 def report_html(run: RunReader) -> str:
@@ -92,8 +92,7 @@ def write_report(run: RunReader, target: str | Path, force: bool = False) -> Pat
         raise InputError(f"{path}: is a folder; --to needs a file, for example {path / 'report.html'}")
     if path.suffix == ".hpsop" or (os.path.exists(path) and path.samefile(run.path)):
         raise InputError(f"{path}: is a run file's name; --to needs another one, for example report.html")
-    if os.path.exists(path) and not force:
-        raise InputError(f"{path}: is there already; give --force to replace it, or another name")
+    refuse_to_replace(path, force)
     write_whole(path, report_html(run))
     return path
 

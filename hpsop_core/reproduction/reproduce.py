@@ -7,12 +7,12 @@ from pathlib import Path
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.levels import FAST
 from hpsop_core.report.data import ReportData
-from hpsop_core.report.html_page import write_whole
 from hpsop_core.reproduction.comparison import Reproduction, checked_run, is_of_the_paper, tables
 from hpsop_core.reproduction.own_run import own_page_html, own_tables
 from hpsop_core.reproduction.page import page_html
 from hpsop_core.reproduction.paper import CASE_NAME
 from hpsop_core.runs.reader import RunReader
+from hpsop_core.writing import write_whole
 
 PAGE = "reproduction.html"
 

@@ -114,6 +114,11 @@ def test_the_hull_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert answer["constraints"]["propeller_clearance"] < 0.0
     assert main([*words, "--case", str(target)]) == 2
     assert "--force" in capsys.readouterr().err
+    drawn = picture.read_bytes()
+    assert main([*words, "--picture", str(picture)]) == 2
+    assert "--force" in capsys.readouterr().err and picture.read_bytes() == drawn
+    picture.write_text("older")
+    assert main([*words, "--picture", str(picture), "--force"]) == 0 and picture.read_bytes() == drawn
     assert main([*words, "--picture", str(tmp_path / "own.bmp")]) == 2
 
 

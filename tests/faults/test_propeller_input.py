@@ -151,6 +151,10 @@ def test_the_propeller_command(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert told["blade_count"] == 4 and told["hub_ratio"] == 0.2
     assert told["expanded_area_ratio"] == pytest.approx(4.0 * radial_table_from_csv(file).expanded_area_ratio_per_blade)
     assert picture.read_bytes().startswith(b"\x89PNG")
+    drawn = picture.read_bytes()
+    for words, status in (([], 2), (["--force"], 0)):
+        assert main(["propeller", str(file), "--blades", "4", "--picture", str(picture), *words]) == status
+        assert picture.read_bytes() == drawn
     assert main(["propeller", str(file), "--blades", "9"]) == 2
 
 

@@ -7,9 +7,9 @@ from pathlib import Path
 
 import pytest
 
-from hpsop_core import load_case
+from hpsop_core import load_case, writing
 from hpsop_core.cli.main import main
-from hpsop_core.report import html_page, report
+from hpsop_core.report import report
 from hpsop_core.runs.controller import RunController
 from tests.two_speeds import TWO_SPEEDS
 
@@ -68,14 +68,14 @@ def test_a_full_disk_leaves_the_old_report(file: Path, tmp_path: Path, monkeypat
     def full(_from: str, _to: object) -> None:
         raise OSError(28, "No space left on device")
 
-    monkeypatch.setattr(html_page.os, "replace", full)
+    monkeypatch.setattr(writing.os, "replace", full)
     with pytest.raises(report.InputError, match="No space left on device"):
-        html_page.write_whole(target, "new")
+        writing.write_whole(target, "new")
     assert target.read_text() == "old" and [entry.name for entry in tmp_path.iterdir()] == ["report.html"]
 
 
 def test_a_report_has_the_permissions_of_any_new_file(tmp_path: Path) -> None:
-    html_page.write_whole(tmp_path / "a.html", "x")
+    writing.write_whole(tmp_path / "a.html", "x")
     (tmp_path / "b.html").write_text("x")
     assert (tmp_path / "a.html").stat().st_mode == (tmp_path / "b.html").stat().st_mode
 
