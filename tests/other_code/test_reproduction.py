@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import csv
+import re
 from pathlib import Path
 
 import pytest
@@ -10,11 +11,13 @@ from html_reading import Page, check
 
 from hpsop_core import load_case, optimize
 from hpsop_core.cli.main import main
+from hpsop_core.quantities import number_text
 from hpsop_core.reproduction import figures, paper
 from hpsop_core.reproduction.comparison import Reproduction
 from hpsop_core.reproduction.reproduce import write_reproduction
 from hpsop_core.runs.reader import RunReader, open_run
 from tests.two_speeds import TWO_SPEEDS
+from tools import paper_run
 
 SECTIONS = ["verdict", "setup", "table3", "table4", "figure5", "figures67", "figure8", "figure9", "run"]
 
@@ -117,6 +120,24 @@ def test_the_papers_points_are_in_the_figures(run: RunReader) -> None:
         for item in plot.series:
             if item.name.startswith("paper"):
                 assert (item.x <= plot.x.limits[1]).all() and (item.y <= plot.y.limits[1]).all()
+
+
+def test_the_page_of_the_docs_holds_the_tables(folder: Path, run: RunReader, tmp_path: Path) -> None:
+    (tmp_path / "pictures").mkdir()
+    text = paper_run.page(run, tmp_path)
+    # Markdown, but for what stands high and low.
+    assert set(re.findall(r"<(/?\w+)", text)) <= {"sub", "/sub", "sup", "/sup", "code", "/code"}
+    lines = text.splitlines()
+    for name in ("table3", "paper_designs", "propeller_at_paper_j", "table4_audit", "resistance_audit"):
+        for row in rows_of(folder, name):
+            first = next(iter(row.values()))
+            assert any(line.startswith(f"| {first} |") and line.count("|") == len(row) + 1 for line in lines), name
+    point = run.design("initial").evaluation.conditions[0]
+    row = next(line for line in lines if line.startswith("| J [-] |"))
+    assert [cell.strip() for cell in row.split("|")][2:4] == ["0.648", number_text(point.advance_coefficient, 3)]
+    for number in (5, 6, 7, 8, 9):
+        assert f"](pictures/paper-figure-{number}.svg)" in text
+        assert (tmp_path / "pictures" / f"paper-figure-{number}.svg").read_text().count("<svg ") == 1
 
 
 def test_called_again_it_goes_on_and_replaces_its_files_only(
