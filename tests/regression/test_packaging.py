@@ -46,6 +46,16 @@ def test_every_need_has_a_lower_bound_that_the_oldest_versions_are() -> None:
         assert name in newest and numbers(newest[name]) >= numbers(lower), name
 
 
+def test_one_version_stands_everywhere() -> None:
+    from hpsop_core import __version__
+
+    citation = (ROOT / "CITATION.cff").read_text(encoding="utf-8")
+    stated = re.findall(r"^version: (.+)$", citation, re.MULTILINE)
+    assert [PROJECT["project"]["version"], *stated] == [__version__, __version__]
+    assert re.search(r"^date-released: \d{4}-\d\d-\d\d$", citation, re.MULTILINE)
+    assert re.search(r"^license: MIT$", citation, re.MULTILINE) and PROJECT["project"]["license"] == "MIT"
+
+
 def test_contents_of_the_wheel() -> None:
     distribution = importlib.metadata.distribution("hpsop")
     record = distribution.read_text("direct_url.json")
