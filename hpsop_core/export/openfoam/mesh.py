@@ -19,9 +19,12 @@ from hpsop_core.geometry.propeller.propeller import Propeller
 PATCHES = ("hull", "deck", "transom")
 SYMMETRY = ("bottom", "side", "midPlane")
 RINGS = 3
-# Extent of the water in lengths: aft of AP, forward of AP, abeam, below and above the waterline.
-_AFT, _FORE, _SIDE, _BELOW, _ABOVE = -3.0, 2.5, 1.75, -1.5, 0.5
 _CELLS_A_LENGTH = 8
+# Half a cell at the ship, which is refined five times: perpendiculars stand in the middle of a cell. A stem that all
+# but touches a plane of the grid would leave skewed faces between the two.
+_ASIDE = 0.5 / (_CELLS_A_LENGTH * 2**5)
+# Extent of the water in lengths: aft of AP, forward of AP, abeam, below and above the waterline.
+_AFT, _FORE, _SIDE, _BELOW, _ABOVE = -3.0 + _ASIDE, 2.5 + _ASIDE, 1.75, -1.5, 0.5
 # Boxes of refinement in lengths: x from, x to, y, below and above the waterline, for a ship that the last one holds;
 # for others all grow with the ship. Each ends a layer of cells or more within the one before it: snappyHexMesh
 # would refine a cell with much finer neighbours, which it cannot with cells that were refined in two directions only.
