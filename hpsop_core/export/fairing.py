@@ -18,8 +18,8 @@ from hpsop_core.geometry.hull.hull import ParentHull
 from hpsop_core.geometry.nurbs import NurbsSurface, basis_matrix
 from hpsop_core.typing_aliases import Array
 
-# Distances in u of the knots beside a seam: a strip of a hundredth of the patch, so that little moves.
-_STRIP = np.array([0.01, 0.02, 0.03])
+# Widths of the strip beside a seam in parts of the patch, tried in turn: what moves is in proportion to them.
+_WIDTHS = (0.01, 0.005, 0.0025)
 # Every span across is parted, so that the strip can follow its neighbour's tangent.
 _PARTS_ACROSS = 3
 # Half-breadths in parts of the breadth: below the first a seam's end is an edge of the ship, above the second none.
@@ -50,16 +50,25 @@ def faired_seams(parent: ParentHull, surfaces: Mapping[str, NurbsSurface]) -> tu
         aft = _meets_with_its_last_row(surfaces[name], surfaces[other], length)
         if aft is None:
             continue
-        found = _turned(result[name], result[other], (start, end), aft, breadth)
-        off = _distance(found, result[name], aft)
-        if off > _FURTHEST * length:
-            continue
-        for above, below in parent.along.items():
-            if below == name:
-                result[above] = _with_lower_edge(result[above], found, aft)
-        result[name] = found
-        moved = max(moved, off)
+        for width in _WIDTHS:
+            knots = _beside(width, aft)
+            found = _turned(result[name], result[other], (start, end), knots, breadth)
+            off = _distance(found, result[name], knots)
+            if off > _FURTHEST * length:
+                continue
+            for above, below in parent.along.items():
+                if below == name:
+                    result[above] = _with_lower_edge(result[above], found, knots)
+            result[name] = found
+            moved = max(moved, off)
+            break
     return result, moved
+
+
+def _beside(width: float, aft: bool) -> Array:
+    """Knots in u beside the seam, which is the patch's last row (aft) or its first."""
+    distances = width * np.array([1.0, 2.0, 3.0])
+    return 1.0 - distances if aft else distances
 
 
 def _meets_with_its_last_row(patch: NurbsSurface, other: NurbsSurface, length: float) -> bool | None:
@@ -72,12 +81,13 @@ def _meets_with_its_last_row(patch: NurbsSurface, other: NurbsSurface, length: f
 
 
 def _turned(
-    patch: NurbsSurface, other: NurbsSurface, part: tuple[float, float], aft: bool, breadth: float
+    patch: NurbsSurface, other: NurbsSurface, part: tuple[float, float], knots: Array, breadth: float
 ) -> NurbsSurface:
+    aft = bool(knots[0] > 0.5)
     breaks = np.unique(patch.knots_v)
     shares = np.arange(1, _PARTS_ACROSS) / _PARTS_ACROSS
     finer = (breaks[:-1, None] + np.diff(breaks)[:, None] * shares).ravel()
-    patch = patch.with_knots_u(1.0 - _STRIP if aft else _STRIP).transposed().with_knots_u(finer).transposed()
+    patch = patch.with_knots_u(knots).transposed().with_knots_u(finer).transposed()
     net = patch.control_points.copy()
     edge, row, its_edge, its_row = (-1, -2, 0, 1) if aft else (0, 1, -1, -2)
     v = np.linspace(0.0, 1.0, 12 * len(np.unique(patch.knots_v)))
@@ -107,16 +117,18 @@ def _turned(
     return replace(patch, control_points=net)
 
 
-def _with_lower_edge(patch: NurbsSurface, below: NurbsSurface, aft: bool) -> NurbsSurface:
+def _with_lower_edge(patch: NurbsSurface, below: NurbsSurface, knots: Array) -> NurbsSurface:
     """The patch above the waterline, its lower edge again the upper edge of the one below."""
-    patch = patch.with_knots_u(1.0 - _STRIP if aft else _STRIP)
+    patch = patch.with_knots_u(knots)
     net = patch.control_points.copy()
     net[:, 0] = below.control_points[:, -1]
     return replace(patch, control_points=net)
 
 
-def _distance(new: NurbsSurface, old: NurbsSurface, aft: bool) -> float:
+def _distance(new: NurbsSurface, old: NurbsSurface, knots: Array) -> float:
     """How far points near the seam moved at most, m."""
-    u: Array = np.linspace(0.0, 1.0, 201)[-80:] if aft else np.linspace(0.0, 1.0, 201)[:80]
-    v = np.linspace(0.0, 1.0, 301)
+    breaks = np.unique(np.concatenate([old.knots_u, knots]))
+    # what a row next to the seam moves: the strip and the two spans beside it
+    near = np.sort(breaks)[-4:] if knots[0] > 0.5 else np.sort(breaks)[:4]
+    u, v = np.linspace(near[0], near[-1], 61), np.linspace(0.0, 1.0, 301)
     return float(np.max(np.linalg.norm(new.evaluate(u, v) - old.evaluate(u, v), axis=2)))
