@@ -7,6 +7,8 @@ OLDEST_PYTHON ?= python3.11
 PIP := $(BIN)/python -m pip install --quiet --disable-pip-version-check
 # Exact versions; with the hash of every file too where these are listed for this Python and machine (`make lock`).
 LIST = constraints/$(shell $(BIN)/python -c 'import sys, sysconfig; print(f"cp{sys.version_info.major}{sys.version_info.minor}-{sysconfig.get_platform()}")')
+# The solvers are compiled by the first answer that needs them: now, not when somebody waits for it.
+COMPILED = $(BIN)/hpsop evaluate dtc-p4119 --level 2 > /dev/null
 # One thread of linear algebra a process: the same bits everywhere, and two cores for two workers.
 export OPENBLAS_NUM_THREADS := 1
 export OMP_NUM_THREADS := 1
@@ -64,12 +66,14 @@ $(VENV)/installed: $(VENV)/bin/python pyproject.toml constraints.txt $(wildcard 
 	@if [ -f $(LIST).txt ]; then \
 		$(PIP) --require-hashes --requirement $(LIST).txt && $(PIP) --no-deps --no-build-isolation --editable .; \
 	else $(PIP) --constraint constraints.txt --editable .; fi
+	@$(COMPILED)
 	@touch $@
 
 $(VENV)/installed-for-tests: $(VENV)/bin/python pyproject.toml constraints.txt $(wildcard constraints/*.txt)
 	@if [ -f $(LIST)-tests.txt ]; then \
 		$(PIP) --require-hashes --requirement $(LIST)-tests.txt && $(PIP) --no-deps --no-build-isolation --editable .; \
 	else $(PIP) --constraint constraints.txt --editable '.[test]'; fi
+	@$(COMPILED)
 	@touch $@ $(VENV)/installed
 
 $(VENV)/installed-for-docs: $(VENV)/bin/python pyproject.toml constraints.txt $(wildcard constraints/*.txt)

@@ -36,6 +36,12 @@ def njit(**options: Any) -> Callable[[_Function], _Function]:
     return compiled
 
 
+def is_missing(function: Any) -> bool:
+    """Whether a function of ``njit`` has yet to be compiled though it could be kept."""
+    file = getattr(getattr(function, "_cache", None), "_cache_file", None)
+    return file is not None and not os.path.exists(file._index_path)
+
+
 def _mend(dispatcher: Any) -> None:
     """A cache that cannot be read, or written, is as good as none; what is damaged is taken away."""
     cache = dispatcher._cache

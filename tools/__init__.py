@@ -1,5 +1,6 @@
 """Tools around the project, not installed with it.
 
+* calibrations: what level 1 takes from level 2 in the shipped cases, as files
 * case_reference: docs/case.md from the declarations of the fields
 * faults: a folder: faults planted one at a time, to see whether the tests notice
 * level_ranking: how well level 1 ranks what level 2 judges

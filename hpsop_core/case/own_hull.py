@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from hpsop_core.case.sections import HullSection
-from hpsop_core.geometry.hull.fit_table import moulded_breadth
-from hpsop_core.geometry.hull.input import ShipTable, read_table
-from hpsop_core.geometry.hull.table_stations import HalfBreadths
+
+# The readers of files, and what fits hulls to them, are loaded for the cases that name a file.
+if TYPE_CHECKING:
+    from hpsop_core.geometry.hull.input import ShipTable
 
 
 @lru_cache(maxsize=4)
@@ -17,6 +19,8 @@ def own_table(section: HullSection) -> ShipTable:
     Raises:
         InputError: the file cannot be used.
     """
+    from hpsop_core.geometry.hull.input import read_table
+
     return read_table(section.own_file, section.read_options)
 
 
@@ -26,6 +30,9 @@ def own_dimensions(section: HullSection) -> dict[str, float]:
     Raises:
         InputError: the file cannot be used.
     """
+    from hpsop_core.geometry.hull.fit_table import moulded_breadth
+    from hpsop_core.geometry.hull.table_stations import HalfBreadths
+
     table = own_table(section)
     breadth = moulded_breadth(HalfBreadths(table.name, table.x, table.z, table.y), table.draft)
     return {"length": table.length, "breadth": breadth, "draft": table.draft}

@@ -23,6 +23,7 @@ from hpsop_core.cli.arguments import (
 )
 from hpsop_core.cli.own_files import add_reading, read_options
 from hpsop_core.errors import InputError
+from hpsop_core.evaluation.levels import TRUTH
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.geometry.hull.input.options import ReadOptions
 from hpsop_core.model_test import MODEL_DIAMETER, MODEL_ROTATION_RATE, MODEL_VISCOSITY
@@ -89,6 +90,10 @@ def _evaluate(arguments: argparse.Namespace) -> int:
     from hpsop_core import evaluate
 
     case, variables = case_and_design(arguments.case, arguments.changes)
+    if arguments.level == TRUTH.number:
+        from hpsop_core.evaluation.first_start import compile_kernels
+
+        compile_kernels(case, lambda line: print(f"hpsop: {line}", file=sys.stderr, flush=True))
     if arguments.errors:
         from hpsop_core.evaluation.errors import evaluate_with_errors
 

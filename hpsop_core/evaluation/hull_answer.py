@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
+from typing import TYPE_CHECKING
 
 from hpsop_core.case.own_hull import own_table
 from hpsop_core.case.sections import HullSection
@@ -12,9 +13,11 @@ from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation.levels import TRUTH, WaveAnswer, level_of
 from hpsop_core.geometry.hull.hull import Hull, ParentHull, load_parent_hull
-from hpsop_core.geometry.hull.input import HullFile, hull_from_table
 from hpsop_core.hydro.friction import ittc57_coefficient
 from hpsop_core.hydro.powering import ResistanceFactors, resistance_parts
+
+if TYPE_CHECKING:
+    from hpsop_core.geometry.hull.input import HullFile
 
 
 @dataclass(frozen=True)
@@ -65,6 +68,8 @@ def own_hull(section: HullSection) -> HullFile:
     Raises:
         InputError: a file that cannot be used.
     """
+    from hpsop_core.geometry.hull.input import hull_from_table  # with all that reads and fits
+
     return hull_from_table(own_table(section), section.shaft_height, section.boss_x)
 
 

@@ -12,6 +12,7 @@ from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import DesignNumbers, HullResult, PropellerResult
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import SolverFailure
+from hpsop_core.evaluation import shipped_calibration
 from hpsop_core.evaluation.condition import condition_result
 from hpsop_core.evaluation.hull_answer import (
     build_hull,
@@ -308,8 +309,19 @@ def _centre_missed(hull: Hull, variables: DesignVariables) -> float:
 
 def _correction(case: Case, level: Level, volume: float) -> WaveCorrection | None:
     if level.is_calibrated and case.constants.wave_calibration == "learnt":
-        return learn_correction(case, volume, case.speeds)
+        kept = shipped_calibration.shipped(case, shipped_calibration.LEARNT)
+        return learn_correction(case, volume, case.speeds) if kept is None else WaveCorrection.from_dict(kept)
     return None
+
+
+def initial_true_waves(case: Case, volume: float) -> tuple[float, ...]:
+    """The true level's wave coefficients of the initial design; ``volume``: V0 in m3.
+
+    Raises:
+        SolverFailure: the solver cannot give a number.
+    """
+    key = hull_variables(case.hull, case.initial.variables, volume)
+    return tuple(answer.wave_coefficient for answer in wave_answers(key, TRUTH.number, case.froude_numbers))
 
 
 def _wave_calibration(case: Case, level: Level, volume: float) -> tuple[float, ...]:
@@ -321,6 +333,7 @@ def _wave_calibration(case: Case, level: Level, volume: float) -> tuple[float, .
     if case.constants.wave_calibration == "stated":
         wanted = case.constants.stated_wave_coefficients
     else:
-        wanted = tuple(answer.wave_coefficient for answer in wave_answers(key, TRUTH.number, froude_numbers))
+        kept = shipped_calibration.shipped(case, shipped_calibration.INITIAL)
+        wanted = initial_true_waves(case, volume) if kept is None else tuple(kept)
     own = wave_answers(key, level.number, froude_numbers)
     return tuple(value / answer.wave_coefficient for value, answer in zip(wanted, own, strict=True))
