@@ -17,6 +17,7 @@ from pathlib import Path
 from typing import Any, TypeAlias
 
 from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.runs.connections import without_room
 
 Cell: TypeAlias = "int | float | str | bytes | None"
 
@@ -127,6 +128,9 @@ def damage_told(
     except HpsopError:
         raise
     except sqlite3.Error as error:
+        full = without_room(path, error)
+        if full:
+            raise InputError(f"{path}: cannot {cannot}: {full}; make room there, or use another disk") from error
         # Of a text that is none it quotes all.
         raise InputError(f"{path}: cannot {cannot} ({_one_line(error)}); {remedy}") from error
     except MemoryError as error:

@@ -3,8 +3,10 @@
 from __future__ import annotations
 
 import contextlib
+import errno
 import os
 import sqlite3
+import tempfile
 import time
 from pathlib import Path
 from urllib.parse import quote
@@ -13,6 +15,8 @@ from hpsop_core.errors import InputError
 
 _LONGEST_CELL = 256 * 2**20  # bytes; a cell that claims more would be memory for nothing
 _PAGE_SIZE = 16384
+_ROOM = 65536  # bytes: what SQLite wants beside a file before it reads or writes a first word of it
+_NO_ROOM = (errno.ENOSPC, errno.EDQUOT, errno.EFBIG)
 
 
 def real_path(path: Path) -> Path:
@@ -30,6 +34,14 @@ def real_path(path: Path) -> Path:
 def log_path(path: Path) -> Path:
     """SQLite's write-ahead log of a run file; ``path`` must be the real one."""
     return path.with_name(path.name + "-wal")
+
+
+def is_log_empty(path: Path) -> bool:
+    """Whether the log of a run file, if it has one, holds nothing."""
+    try:
+        return log_path(path).stat().st_size == 0
+    except OSError:
+        return True
 
 
 def connect_writer(path: Path) -> sqlite3.Connection:
@@ -66,6 +78,29 @@ def checkpoint(connection: sqlite3.Connection) -> None:
         connection.execute("PRAGMA busy_timeout = 10000")
 
 
+def without_room(path: Path, error: sqlite3.Error) -> str:
+    """Why there is no room for a file that SQLite could not read or write: of a full disk it says "disk I/O error".
+
+    Args:
+        path: of the run file.
+        error: SQLite's.
+
+    Returns:
+        The words, or "" where the reason is another one.
+    """
+    name = getattr(error, "sqlite_errorname", "")
+    if name == "SQLITE_FULL":
+        return "its disk is full"
+    if name.startswith("SQLITE_IOERR"):
+        try:
+            with tempfile.TemporaryFile(dir=real_path(path).parent) as file:
+                os.posix_fallocate(file.fileno(), 0, _ROOM)
+        except OSError as problem:
+            if problem.errno in _NO_ROOM:
+                return f"its disk is full ({problem.strerror})"
+    return ""
+
+
 def connect_reader(path: Path) -> sqlite3.Connection:
     """A connection that never writes, also where the folder is read-only.
 
@@ -82,7 +117,9 @@ def connect_reader(path: Path) -> sqlite3.Connection:
     attempts = 3
     while True:
         address = f"file:{quote(str(path))}?mode=ro"
-        if not log_path(path).exists() and not path.with_name(path.name + "-journal").exists():
+        # What a writer leaves that found no room is an empty log, and then there is none for a reader's side files.
+        nothing = not log_path(path).exists() or (attempts == 1 and is_log_empty(path))
+        if nothing and not path.with_name(path.name + "-journal").exists():
             # Nobody has it open for writing. Without this flag SQLite would want to make side files for a WAL file,
             # which fails in a read-only folder and leaves litter in any other.
             address += "&immutable=1"

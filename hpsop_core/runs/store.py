@@ -20,7 +20,15 @@ from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.problem import Candidate, Outcome
 from hpsop_core.runs.checksums import Tally, checksum, damage_told
-from hpsop_core.runs.connections import begin_log, checkpoint, connect_writer, log_path, real_path
+from hpsop_core.runs.connections import (
+    begin_log,
+    checkpoint,
+    connect_writer,
+    is_log_empty,
+    log_path,
+    real_path,
+    without_room,
+)
 from hpsop_core.runs.content import RunContent
 from hpsop_core.runs.lock import WriterLock, refuse_second_name
 from hpsop_core.runs.migrations import lift
@@ -92,6 +100,7 @@ class RunStore:
         self._guard = threading.RLock()
         self._dictionary = b""
         self._real = real_path(path)
+        self._had_log = os.path.lexists(log_path(self._real))
         if os.path.isdir(path):
             raise InputError(f"{path}: is a folder; name a file, for example {path / 'run.hpsop'}")
         self._lock = WriterLock(path)
@@ -106,6 +115,7 @@ class RunStore:
                 self._connection.close()
                 raise
         except BaseException:
+            self._leave_as_found()
             self._lock.release()
             raise
 
@@ -117,7 +127,7 @@ class RunStore:
             raise InputError(lost)
         if case is None and not os.path.isfile(path):
             raise missing
-        there, self._had_log = os.path.exists(self._real), os.path.exists(log_path(self._real))
+        there = os.path.exists(self._real)
         connection = None
         try:
             with damage_told(path, "be written", "make room or choose another place"):
@@ -144,6 +154,13 @@ class RunStore:
                     self._real.unlink()
             raise
         return connection
+
+    def _leave_as_found(self) -> None:
+        """After an opening that failed: a log that this very opening made, and in which nothing stands, goes again."""
+        if not self._had_log and is_log_empty(self._real):
+            with contextlib.suppress(OSError):
+                for suffix in ("-wal", "-shm"):
+                    self._real.with_name(self._real.name + suffix).unlink(missing_ok=True)
 
     def _lost_log(self) -> str:
         """Why a new run must not begin here though there is no run: what is left of another one; else ""."""
@@ -405,7 +422,8 @@ class RunStore:
                 if isinstance(error, sqlite3.DatabaseError) and not isinstance(
                     error, (sqlite3.IntegrityError, sqlite3.ProgrammingError)
                 ):
-                    raise StoreUnwritableError(f"{self.path}: {error}") from error
+                    full = without_room(self.path, error)
+                    raise StoreUnwritableError(f"{self.path}: {full or error}") from error
                 raise
 
     def _check_file(self) -> None:

@@ -2,12 +2,15 @@
 
 from __future__ import annotations
 
+import contextlib
 import json
 import os
+import resource
 import sqlite3
 import subprocess
 import sys
 import threading
+from collections.abc import Iterator
 from dataclasses import replace
 from pathlib import Path
 
@@ -20,6 +23,7 @@ from hpsop_core.errors import InputError
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.optimization.problem import Candidate
 from hpsop_core.runs.checksums import DamagedRunError
+from hpsop_core.runs.connections import log_path
 from hpsop_core.runs.lock import is_being_written, lock_path
 from hpsop_core.runs.reader import open_run
 from hpsop_core.runs.records import json_text
@@ -188,6 +192,40 @@ def test_6_a_full_disk_refuses_the_write_and_leaves_the_file_as_it_was(path: Pat
     store.record_evaluation(number, asked, 1, result(asked))
     assert open_run(path).progress()[1] == number
     store.close()
+
+
+@contextlib.contextmanager
+def full_disk() -> Iterator[None]:
+    """No file of this process may grow beyond 20 kB: as on a disk without room for what SQLite needs first."""
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (20480, before[1]))
+    try:
+        yield
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+
+
+def test_6_reopening_on_a_full_disk_says_so_and_leaves_the_run_readable(path: Path) -> None:
+    store = RunStore(path, CASE)
+    asked = candidate()
+    store.record_evaluation(1, asked, 1, result(asked))
+    store.close()
+    before = sorted(file.name for file in path.parent.iterdir())
+    with full_disk():
+        with pytest.raises(InputError, match=r"cannot be written: its disk is full \(.+\); make room there"):
+            RunStore(path)
+        assert open_run(path).progress()[1] == 1
+    assert sorted(file.name for file in path.parent.iterdir()) == before
+    # what an earlier version left there: an empty log, and no room to read beside it
+    log_path(path).touch()
+    with full_disk():
+        assert open_run(path).progress()[1] == 1
+        # a log with something in it cannot be passed over
+        log_path(path).write_bytes(b"x" * 4096)
+        with pytest.raises(InputError, match="cannot be read as a run file: its disk is full"):
+            open_run(path)
+    log_path(path).unlink()
+    RunStore(path).close()
 
 
 def test_6_a_file_that_lost_its_name_is_noticed(path: Path, tmp_path: Path) -> None:
