@@ -81,7 +81,7 @@ class Explorer:
         run_asked: bool = True,
         hull: tuple[str, bytes] | None = None,
     ) -> None:
-        self.folder = folder or runs_folder()
+        self.folder = folder or runs_folder()[0]
         token = token_of(self.folder)
         self.address = address_of(host, port, token)
         draft = Draft(case)
@@ -264,7 +264,7 @@ def main(argv: Sequence[str] | None = None) -> int:
         if arguments.workers is not None and arguments.workers < 1:
             raise InputError(f"--workers {arguments.workers}: give 1 or more")
         origins = [origin_of(text) for text in arguments.allow_origin]
-        folder = runs_folder()
+        folder, homeless = runs_folder()
         opening = _chosen(arguments.what, folder)
         port = free_port(arguments.host, arguments.port)
         explorer = Explorer(
@@ -283,6 +283,8 @@ def main(argv: Sequence[str] | None = None) -> int:
     except HpsopError as error:
         sys.stderr.write(f"{error}\n")
         return 2
+    if homeless:
+        sys.stderr.write(f"{homeless}\n")
     if explorer.trouble:
         sys.stderr.write(f"{explorer.trouble}\nthe demonstration is shown instead\n")
     if port != arguments.port:

@@ -2,12 +2,11 @@
 
 from __future__ import annotations
 
-import contextlib
 import os
-import tempfile
 from pathlib import Path
 
 from hpsop_core.errors import InputError
+from hpsop_core.scratch import scratch_folder
 
 
 def refuse_to_replace(path: Path, force: bool) -> None:
@@ -28,22 +27,9 @@ def write_whole(path: Path, content: str | bytes) -> None:
     """
     try:
         path.parent.mkdir(parents=True, exist_ok=True)
-        handle, name = tempfile.mkstemp(prefix=".hpsop-", suffix=path.suffix, dir=path.parent)
-        try:
-            with os.fdopen(handle, "wb") as stream:
-                stream.write(content.encode("utf-8") if isinstance(content, str) else content)
-            os.chmod(name, 0o666 & ~_umask())
-            os.replace(name, path)
-        except BaseException:
-            with contextlib.suppress(OSError):
-                os.unlink(name)
-            raise
+        with scratch_folder("file", beside=path) as folder:
+            whole = folder / path.name
+            whole.write_bytes(content.encode("utf-8") if isinstance(content, str) else content)
+            os.replace(whole, path)
     except OSError as error:
         raise InputError(f"{path}: cannot be written ({error.strerror or error}); choose another place") from error
-
-
-def _umask() -> int:
-    # There is no way to ask without setting.
-    mask = os.umask(0o022)
-    os.umask(mask)
-    return mask

@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import os
 import re
+import tempfile
 import time
 from dataclasses import dataclass
 from pathlib import Path
@@ -48,13 +49,33 @@ class LibraryEntry:
     continuable: bool = False
 
 
-def runs_folder() -> Path:
-    """Where runs are saved: HPSOP_RUNS, or hpsop/runs in the user's data folder."""
-    stated = os.environ.get("HPSOP_RUNS")
+def runs_folder() -> tuple[Path, str]:
+    """Where runs are saved, and what to tell the user about it, or "".
+
+    HPSOP_RUNS, or hpsop/runs in the user's data folder; for an account without a home that can be written a new
+    temporary folder, which stays. Where there is not even that, runs can be looked at and none started.
+
+    Raises:
+        InputError: HPSOP_RUNS names a home that does not exist.
+    """
+    stated, data = os.environ.get("HPSOP_RUNS"), os.environ.get("XDG_DATA_HOME")
     if stated:
-        return Path(stated).expanduser()
-    data = os.environ.get("XDG_DATA_HOME")
-    return (Path(data) if data else Path.home() / ".local" / "share") / "hpsop" / "runs"
+        try:
+            return Path(stated).expanduser(), ""
+        except RuntimeError as error:
+            raise InputError(f"HPSOP_RUNS={stated}: is no folder ({error}); set it to one") from None
+    # an account may have no home at all (RuntimeError)
+    with contextlib.suppress(OSError, RuntimeError):
+        folder = (Path(data) if data else Path.home() / ".local" / "share") / "hpsop" / "runs"
+        folder.mkdir(parents=True, exist_ok=True)
+        if os.access(folder, os.W_OK | os.X_OK):
+            return folder, ""
+    remedy = "set HPSOP_RUNS to a folder of yours"
+    try:
+        folder = Path(tempfile.mkdtemp(prefix="hpsop-runs-"))
+    except OSError:
+        return Path("hpsop-runs"), f"no home folder can be written: runs cannot be saved; {remedy}"
+    return folder, f"no home folder can be written: runs are saved in {folder}; {remedy} to find them again"
 
 
 class RunLibrary:

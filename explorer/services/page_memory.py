@@ -33,8 +33,12 @@ class PageMemory:
         with contextlib.suppress(OSError):
             folder.mkdir(parents=True, exist_ok=True)
             fresh = folder / (_NAME + ".new")
-            fresh.write_text(text, encoding="utf-8")
-            os.replace(fresh, folder / _NAME)
+            try:
+                fresh.write_text(text, encoding="utf-8")
+                os.replace(fresh, folder / _NAME)
+            finally:
+                # what a full disk took half of
+                fresh.unlink(missing_ok=True)
 
 
 def remembered(folder: Path) -> PageMemory:

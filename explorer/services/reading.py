@@ -5,7 +5,6 @@ from __future__ import annotations
 import contextlib
 import pickle
 import subprocess
-import tempfile
 import threading
 import time
 from collections.abc import Callable
@@ -21,6 +20,7 @@ from hpsop_core.geometry.foreign.apart import own_python
 from hpsop_core.geometry.hull.input import ReadOptions
 from hpsop_core.geometry.hull.input.mesh import SUFFIXES as MESH_SUFFIXES
 from hpsop_core.geometry.hull.input.surfaces import SUFFIXES as SURFACE_SUFFIXES
+from hpsop_core.scratch import scratch_folder
 
 LONGEST_SECONDS = 60.0
 MOST_MEMORY = 2 * 2**30
@@ -113,18 +113,24 @@ class ReadingProcess:
         job: Callable[[Path], HullJob | PropellerJob],
         unwanted: Callable[[], bool],
     ) -> Answer:
-        with self._lock, tempfile.TemporaryDirectory(prefix="hpsop-ship-") as folder:
-            path = Path(folder) / f"own-file{kind}"
-            path.write_bytes(content)
-            try:
-                connection = self._start()
-                connection.send_bytes(pickle.dumps(job(path)))
-                return self._answer(connection, name, unwanted)
-            except InputError as error:
-                return Refused(str(error))
-            except (EOFError, OSError):
-                self._end()
-                return Refused(f"{name}: the process that read it died; is the file damaged, or far too large?")
+        try:
+            with self._lock, scratch_folder("ship") as folder:
+                path = folder / f"own-file{kind}"
+                path.write_bytes(content)
+                return self._told(job(path), name, unwanted)
+        except InputError as error:
+            return Refused(str(error))
+        except OSError as error:
+            return Refused(f"{name}: cannot be kept while it is read ({error.strerror}); set TMPDIR elsewhere")
+
+    def _told(self, job: HullJob | PropellerJob, name: str, unwanted: Callable[[], bool]) -> Answer:
+        try:
+            connection = self._start()
+            connection.send_bytes(pickle.dumps(job))
+            return self._answer(connection, name, unwanted)
+        except (EOFError, OSError):
+            self._end()
+            return Refused(f"{name}: the process that read it died; is the file damaged, or far too large?")
 
     def _answer(self, connection: Connection, name: str, unwanted: Callable[[], bool]) -> Answer:
         begun = time.monotonic()

@@ -6,7 +6,6 @@ import json
 import os
 import re
 import shutil
-import tempfile
 from collections.abc import Sequence
 from pathlib import Path
 
@@ -22,6 +21,7 @@ from hpsop_core.export.design import LeavingDesign, leaving_design
 from hpsop_core.export.formats import USUAL_FORMATS, checked_formats
 from hpsop_core.geometry.propeller.surface import EDGE_THICKNESS_RATIO
 from hpsop_core.runs.reader import RunReader
+from hpsop_core.scratch import scratch_folder
 from hpsop_core.version import __version__
 
 _ABOUT = """\
@@ -145,21 +145,21 @@ def zip_design(
     if not isinstance(evaluation, Ok):
         raise InputError(f"{label} failed ({evaluation.reason}) and has no shape; choose another one")
     data = leaving_design(case, evaluation, label, evaluation.as_dict(), reference)
-    with tempfile.TemporaryDirectory(prefix="hpsop-export-") as workshop:
-        folder = Path(workshop) / "design"
+    with scratch_folder("export") as workshop:
+        folder = workshop / "design"
         _written(data, folder, wanted)
-        return Path(shutil.make_archive(str(Path(workshop) / "archive"), "zip", folder)).read_bytes()
+        return Path(shutil.make_archive(str(workshop / "archive"), "zip", folder)).read_bytes()
 
 
 def _written(data: LeavingDesign, target: Path, formats: Sequence[str]) -> tuple[Path, ...]:
     try:
         target.parent.mkdir(parents=True, exist_ok=True)
         # On the same file system as the target, so that every file appears whole or not at all.
-        with tempfile.TemporaryDirectory(prefix=".hpsop-export-", dir=target.parent) as workshop:
-            made = [file.relative_to(workshop) for file in _write(data, Path(workshop), formats)]
+        with scratch_folder("export", beside=target) as workshop:
+            made = [file.relative_to(workshop) for file in _write(data, workshop, formats)]
             for file in made:
                 (target / file.parent).mkdir(parents=True, exist_ok=True)
-                os.replace(Path(workshop) / file, target / file)
+                os.replace(workshop / file, target / file)
     except OSError as error:
         raise InputError(f"{target}: cannot be written ({error.strerror or error}); choose another folder") from error
     return tuple(target / file for file in made)

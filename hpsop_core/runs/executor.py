@@ -10,19 +10,24 @@ import multiprocessing.forkserver
 import multiprocessing.resource_tracker
 import os
 import signal
+import tempfile
 import time
 from collections.abc import Callable, Iterator
 from concurrent.futures import Future, ProcessPoolExecutor
+from functools import cache
+from pathlib import Path
 from typing import Any
 
 from hpsop_core.errors import InputError
 from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.tasks import presence_task, start_worker
 from hpsop_core.runs.workers import Workers, WorkersUnavailableError
+from hpsop_core.scratch import lasting_scratch_folder
 
 _START_LIMIT = 120.0  # seconds for all workers of a pool to import what they need
 _STARTS_TRIED = 3
 _WARM_LIMIT = 600.0  # seconds for all workers to compile what they need, and evaluate the initial design
+_LONGEST_FOLDER = 72  # letters: multiprocessing adds up to 32 for its own folder and socket
 _TICK = 0.1  # seconds between looks at the controls
 _MOST_WORKERS_PER_CORE = 16  # each holds some 200 MB; more than one a core gains nothing
 _THREAD_VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS", "MKL_NUM_THREADS", "NUMEXPR_NUM_THREADS")
@@ -87,7 +92,7 @@ class LocalWorkers:
         multiprocessing.forkserver.set_forkserver_preload(["hpsop_core.runs.preload"])
         # First, because its start unblocks the very signals that we block for the fork server's.
         multiprocessing.resource_tracker.ensure_running()
-        with _one_thread_environment(), _signals_blocked():
+        with _one_thread_environment(), _signals_blocked(), _temporary_files_in(_own_folder()):
             multiprocessing.forkserver.ensure_running()
         return "forkserver"
 
@@ -226,6 +231,24 @@ def _one_thread_environment() -> Iterator[None]:
                 os.environ.pop(name, None)
             else:
                 os.environ[name] = value
+
+
+@cache
+def _own_folder() -> Path:
+    """Where the fork server's socket stands: multiprocessing's own folder stays for ever where the run was killed."""
+    return lasting_scratch_folder("workers")
+
+
+@contextlib.contextmanager
+def _temporary_files_in(folder: Path) -> Iterator[None]:
+    before = tempfile.tempdir
+    # a socket's path has 107 letters at most
+    if len(str(folder)) < _LONGEST_FOLDER:
+        tempfile.tempdir = str(folder)
+    try:
+        yield
+    finally:
+        tempfile.tempdir = before
 
 
 @contextlib.contextmanager

@@ -7,13 +7,10 @@ as ever, and the same content has the same name whichever run it comes from.
 
 from __future__ import annotations
 
-import atexit
 import contextlib
 import dataclasses
 import hashlib
 import os
-import shutil
-import tempfile
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -22,6 +19,7 @@ from typing import Any
 
 from hpsop_core.case.case import Case
 from hpsop_core.errors import InputError
+from hpsop_core.scratch import lasting_scratch_folder, scratch_folder
 
 FILE_FIELDS = (("hull", "file"), ("hull", "offsets"), ("hull", "stl"), ("propeller", "geometry"))
 """Where a case names a file: section and field. A field that this version's cases do not have is passed over."""
@@ -173,11 +171,11 @@ def _written(file: ShipFile) -> Path:
             return path
     try:
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
-        descriptor, fresh = tempfile.mkstemp(dir=folder)
-        with os.fdopen(descriptor, "wb") as stream:
-            stream.write(file.content)
-        os.chmod(fresh, 0o444)
-        os.replace(fresh, path)
+        with scratch_folder("ship", beside=folder) as workshop:
+            whole = workshop / path.name
+            whole.write_bytes(file.content)
+            os.chmod(whole, 0o444)
+            os.replace(whole, path)
     except (OSError, ValueError) as error:
         reason = getattr(error, "strerror", None) or str(error)
         raise InputError(f"{file.name}: cannot be written to {folder} ({reason}); set XDG_CACHE_HOME") from error
@@ -194,6 +192,4 @@ def _cache_folder() -> Path:
         folder.mkdir(parents=True, exist_ok=True, mode=0o700)
         if os.access(folder, os.W_OK | os.X_OK):
             return folder
-    folder = Path(tempfile.mkdtemp(prefix="hpsop-ships-"))
-    atexit.register(shutil.rmtree, folder, ignore_errors=True)
-    return folder
+    return lasting_scratch_folder("ships")

@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -12,6 +11,7 @@ from hpsop_core.geometry.hull.form import LEAST_STRETCH
 from hpsop_core.geometry.hull.hull import load_parent_hull
 from hpsop_core.geometry.hull.input import parent_hull_from_offsets
 from hpsop_core.geometry.hull.mesh import hull_mesh, underwater_mesh
+from hpsop_core.scratch import scratch_folder
 from hpsop_core.validation.check import FITTED, HELD_OUT, Check, absolute_check, labelled, relative_check
 
 GROUP = "hull geometry"
@@ -55,7 +55,7 @@ def _ship_checks() -> Iterator[Check]:
 
 
 def _closed_form_checks() -> Iterator[Check]:
-    with tempfile.TemporaryDirectory() as folder:
+    with scratch_folder("validation") as folder:
         path = Path(folder) / "wigley.csv"
         path.write_text(_wigley_table(), encoding="utf-8")
         wigley = parent_hull_from_offsets(path, 100.0, 6.25).hydrostatics

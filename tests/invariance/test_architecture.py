@@ -24,6 +24,7 @@ ORDER = (
     "typing_aliases",
     "errors",
     "reading",
+    "scratch",
     "writing",
     "version",
     "model_test",
