@@ -2,12 +2,14 @@
 
 numba keeps what it compiled beside the source or in the user's cache folder. Where neither can be written (an
 installation for all, an account without a home) it refuses to compile at all, and a damaged file of its cache ends the
-program: here the kernels are compiled for this process alone, or once more.
+program, or where the damage lies in machine code computes something else: here the kernels are compiled for this
+process alone, or once more where a checksum of what was kept is wrong.
 """
 
 from __future__ import annotations
 
 import contextlib
+import hashlib
 import logging
 import os
 from collections.abc import Callable
@@ -16,6 +18,7 @@ from typing import Any, TypeVar
 import numba
 
 _LOG = logging.getLogger("hpsop")
+_DIGEST = hashlib.sha256().digest_size
 _Function = TypeVar("_Function", bound=Callable[..., Any])
 
 
@@ -45,6 +48,7 @@ def is_missing(function: Any) -> bool:
 def _mend(dispatcher: Any) -> None:
     """A cache that cannot be read, or written, is as good as none; what is damaged is taken away."""
     cache = dispatcher._cache
+    _check(cache._cache_file)
     load, save = cache.load_overload, cache.save_overload
 
     def load_overload(signature: Any, target: Any) -> Any:
@@ -62,3 +66,21 @@ def _mend(dispatcher: Any) -> None:
             save(signature, data)
 
     cache.load_overload, cache.save_overload = load_overload, save_overload
+
+
+def _check(file: Any) -> None:
+    """Kernels are kept with a checksum behind them, which unpickling passes over, and taken only with a right one."""
+    dump, load = file._dump, file._load_data
+
+    def dumped(content: Any) -> bytes:
+        data: bytes = dump(content)
+        return data + hashlib.sha256(data).digest()
+
+    def load_data(name: str) -> Any:
+        with open(file._data_path(name), "rb") as stream:
+            data = stream.read()
+        if hashlib.sha256(data[:-_DIGEST]).digest() != data[-_DIGEST:]:
+            raise ValueError(f"{name} is not what was written")
+        return load(name)
+
+    file._dump, file._load_data = dumped, load_data

@@ -5,6 +5,7 @@ from __future__ import annotations
 import logging
 import os
 import shutil
+import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -15,7 +16,7 @@ from run_files import small_case, wait_until
 
 from explorer.app import Explorer, _chosen, main
 from explorer.server.security import free_port
-from explorer.services.library import NOT_READABLE, RunLibrary
+from explorer.services.library import NOT_READABLE, RunLibrary, runs_folder
 from explorer.services.run_keeper import RunKeeper
 from explorer.state.run_picture import FAILED, FINISHED
 from hpsop_core.errors import InputError
@@ -125,3 +126,26 @@ def test_a_failed_run_may_be_continued_from_the_library(tmp_path: Path) -> None:
     RunStore(path).close()
     entry = RunLibrary(tmp_path).entries()[0]
     assert entry.summary.startswith("failed") and entry.continuable
+
+
+@pytest.mark.parametrize("home", ["none", "file"])
+def test_without_a_home_that_can_be_written_runs_have_a_folder_of_their_own(
+    home: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    for name in ("HPSOP_RUNS", "XDG_DATA_HOME"):
+        monkeypatch.delenv(name, raising=False)
+    (tmp_path / "file").write_text("", encoding="utf-8")
+
+    def no_home() -> Path:
+        raise RuntimeError("Could not determine home directory.")
+
+    # a file where the home should be: also root cannot write into it
+    monkeypatch.setattr(Path, "home", no_home if home == "none" else lambda: tmp_path / "file")
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path))
+    folder, told = runs_folder()
+    assert folder.parent == tmp_path and not list(folder.iterdir())
+    assert str(folder) in told and "HPSOP_RUNS" in told
+    monkeypatch.setattr(tempfile, "tempdir", str(tmp_path / "nowhere"))
+    assert "cannot be saved" in runs_folder()[1]
+    monkeypatch.setenv("HPSOP_RUNS", str(tmp_path / "mine"))
+    assert runs_folder() == (tmp_path / "mine", "")
