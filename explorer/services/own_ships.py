@@ -21,8 +21,7 @@ from explorer.services.reading_job import Answer, Refused
 from explorer.state.own_ship import OwnShip, UserFile
 from hpsop_core.case.case import Case
 from hpsop_core.case.ready_case import ready_case
-from hpsop_core.errors import HpsopError, InputError
-from hpsop_core.evaluation.reference import reference_for
+from hpsop_core.errors import InputError
 from hpsop_core.geometry.hull.input import HullFile, ReadOptions, normalised_options, normalised_text
 from hpsop_core.geometry.propeller.input import UnderstoodPropeller
 from hpsop_core.geometry.propeller.input.normalised import normalised_text as propeller_text
@@ -186,23 +185,6 @@ class OwnShips:
         else:
             raise InputError("there is no file yet; bring a hull or a propeller first")
         return case if propeller is None else _with_its_area(case, propeller.expanded_area_ratio)
-
-    @staticmethod
-    def solvable(case: Case) -> tuple[Case, str]:
-        """The case with the levels that can be solved for its initial design, and what had to be left, or "".
-
-        Raises:
-            HpsopError: not even level 1 gives numbers.
-        """
-        try:
-            reference_for(case, 2)
-        except HpsopError as error:
-            total = case.optimization.generations
-            alone = case.replaced("constants", wave_calibration="none")
-            alone = alone.replaced("optimization", level1_generations=total)
-            reference_for(alone, 1)
-            return alone, f"level 2 gives no numbers here ({error}); set up with level 1 alone, not calibrated"
-        return case, ""
 
     def _hull_case(self, ship: OwnShip, read: HullFile, propeller: str) -> Case:
         table, told = read.table, read.understood

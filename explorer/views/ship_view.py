@@ -23,6 +23,7 @@ from explorer.views.ship_words import hull_words, propeller_words
 from hpsop_core.case.fields import checked_value, rules
 from hpsop_core.case.sections import HullSection
 from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.evaluation.solvable import solvable_case
 from hpsop_core.geometry.hull.input import UNITS, Axes
 from hpsop_core.geometry.hull.input.mesh import SUFFIXES as MESH_SUFFIXES
 from hpsop_core.markup import Markup, fill, joined
@@ -135,7 +136,7 @@ class ShipView:
         """Set up the case of this ship, and show it where no run is under way."""
         session = self._session
         try:
-            case, left = self._ships.solvable(self._ships.case())
+            case, left = solvable_case(self._ships.case())
         except HpsopError as error:
             session.notify("Not done", str(error), "red")
             return

@@ -7,9 +7,10 @@ import os
 from pathlib import Path
 from typing import Any
 
+from hpsop_core.case.case import Case
 from hpsop_core.case.fields import FieldRule
 from hpsop_core.cli.arguments import add_json, checked_option, print_json
-from hpsop_core.errors import InputError
+from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.geometry.hull.input.options import UNITS, Axes, ReadOptions
 from hpsop_core.writing import refuse_to_replace, write_whole
 
@@ -73,6 +74,7 @@ def _hull(arguments: argparse.Namespace) -> int:
         refuse_to_replace(case_path, arguments.force)
     file = read_hull(arguments.file, options)
     written = []
+    left = ""
     if picture is not None:
         from hpsop_core.charts.own_files import hull_sheet
 
@@ -82,13 +84,28 @@ def _hull(arguments: argparse.Namespace) -> int:
         from hpsop_core.case.ready_case import ready_case
 
         path = os.path.relpath(Path(arguments.file).resolve(), case_path.resolve().parent)
-        write_whole(case_path, ready_case(file, path, options).to_toml())
+        case, left = _solvable(ready_case(file, path, options), Path(arguments.file).resolve())
+        write_whole(case_path, case.to_toml())
         written.append(case_path)
     if arguments.json:
-        print_json({**file.understood.as_dict(), "written": [str(path) for path in written]})
+        told = file.understood.as_dict()
+        warnings = [*told["warnings"], *([left] if left else [])]
+        print_json({**told, "warnings": warnings, "written": [str(path) for path in written]})
     else:
-        print("\n".join([str(file.understood), *(f"written: {path}" for path in written)]))
+        lines = [str(file.understood), *([f"warning: {left}"] if left else [])]
+        print("\n".join([*lines, *(f"written: {path}" for path in written)]))
     return 0
+
+
+def _solvable(case: Case, file: Path) -> tuple[Case, str]:
+    """The case as it can be solved, and what had to be left for that; it names its file relative to itself."""
+    from hpsop_core.evaluation.solvable import solvable_case
+
+    try:
+        solved, left = solvable_case(case.replaced("hull", file=str(file)))
+    except HpsopError as error:
+        return case, f"the case has no numbers as it stands ({error}); change its speeds, propeller or bounds"
+    return solved.replaced("hull", file=case.hull.file), left
 
 
 def _propeller(arguments: argparse.Namespace) -> int:

@@ -9,9 +9,11 @@ import numpy as np
 import pytest
 import trimesh
 
-from hpsop_core.case.case import load_case
+from hpsop_core.case.case import Case, load_case
 from hpsop_core.cli.main import main
-from hpsop_core.errors import InputError
+from hpsop_core.errors import InputError, SolverFailure
+from hpsop_core.evaluation import solvable
+from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.geometry.hull.input import ReadOptions, read_hull, read_table
 
 LENGTH, BREADTH, DRAFT = 120.0, 17.0, 6.5
@@ -120,6 +122,34 @@ def test_the_hull_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     picture.write_text("older")
     assert main([*words, "--picture", str(picture), "--force"]) == 0 and picture.read_bytes() == drawn
     assert main([*words, "--picture", str(tmp_path / "own.bmp")]) == 2
+
+
+def test_a_ship_too_slow_for_level_2_is_set_up_with_level_1_and_that_is_said(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def too_slow(case: Case, level: int) -> Reference:
+        if level == 2:
+            raise SolverFailure("rankine", "no waves at Froude number 0.14")
+        return reference_for(case, level)
+
+    monkeypatch.setattr(solvable, "reference_for", too_slow)
+    path, target = saved(tmp_path), tmp_path / "own.toml"
+    words = ["hull", str(path), "--length", "120", "--draft", "6.5", "--case", str(target)]
+    assert main(words) == 0
+    assert "warning: level 2 gives no numbers here (rankine: no waves" in capsys.readouterr().out
+    case = load_case(target)
+    assert case.constants.wave_calibration == "none"
+    assert case.optimization.level1_generations == case.optimization.generations
+    assert "level 1 alone" in case.description
+    assert main(["evaluate", str(target), "--level", "1"]) == 0
+    capsys.readouterr()
+
+    def never(_case: Case, _level: int) -> Reference:
+        raise SolverFailure("hull", "no form")
+
+    monkeypatch.setattr(solvable, "reference_for", never)
+    assert main([*words, "--force", "--json"]) == 0
+    assert "no numbers as it stands" in json.loads(capsys.readouterr().out)["warnings"][-1]
 
 
 def test_the_resistance_command_takes_any_hull(tmp_path: Path, capsys: pytest.CaptureFixture[str]) -> None:
