@@ -89,7 +89,7 @@ def _hull(arguments: argparse.Namespace) -> int:
         written.append(case_path)
     if arguments.json:
         told = file.understood.as_dict()
-        warnings = [*told["warnings"], *([left] if left else [])]
+        warnings = [*file.understood.warnings, *([left] if left else [])]
         print_json({**told, "warnings": warnings, "written": [str(path) for path in written]})
     else:
         lines = [str(file.understood), *([f"warning: {left}"] if left else [])]

@@ -53,13 +53,13 @@ def test_a_bit_of_machine_code_is_not_run(tmp_path: Path) -> None:
     """What can be unpickled may still be other code than was compiled: a constant of the kernel is another one."""
     (tmp_path / "kernel.py").write_text(KERNEL.replace("2.0 * x", "x * 1234.5 / 617.25"), encoding="utf-8")
     cache = tmp_path / "cache"
-    assert _run(tmp_path, str(cache)) == "42.0"
+    assert _run(tmp_path, str(cache)).startswith("42.0 ")
     constant = struct.pack("<d", 1234.5)
     kept = [file for file in cache.rglob("*.nbc") if constant in file.read_bytes()]
     assert kept
     for file in kept:
         file.write_bytes(file.read_bytes().replace(constant, struct.pack("<d", 9876.5)))
-    assert _run(tmp_path, str(cache)) == "42.0"
+    assert _run(tmp_path, str(cache)).startswith("42.0 ")
 
 
 def test_without_a_folder_that_can_be_written_kernels_are_compiled_for_the_process(tmp_path: Path) -> None:
