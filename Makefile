@@ -80,7 +80,7 @@ $(VENV)/installed-for-docs: $(VENV)/bin/python pyproject.toml constraints.txt $(
 	@if [ -f $(LIST)-docs.txt ]; then \
 		$(PIP) --require-hashes --requirement $(LIST)-docs.txt && $(PIP) --no-deps --no-build-isolation --editable .; \
 	else $(PIP) --constraint constraints.txt --editable '.[docs]'; fi
-	@touch $@ $(VENV)/installed
+	@touch $@
 
 # After constraints.txt was changed: the hashes of the files that this Python and machine take.
 lock: $(VENV)/bin/python
