@@ -17,6 +17,8 @@ from explorer.views.chart_tabs import chart_tabs
 from explorer.views.charts_view import ChartsView
 from explorer.views.compare_view import CompareView
 from explorer.views.design_view import DesignView
+from explorer.views.help_view import HelpView
+from explorer.views.help_words import purpose
 from explorer.views.library_view import LibraryView
 from explorer.views.on_display import select_first
 from explorer.views.overlay_view import OverlayView
@@ -64,6 +66,9 @@ def build_shared(app: AppState, services: Services, server: viser.ViserServer) -
     space = tabs.add_tab("Design space")
     case_tab = tabs.add_tab("Case")
     runs = tabs.add_tab("Runs")
+    for title, tab in (("Design space", space), ("Case", case_tab), ("Runs", runs)):
+        with tab:
+            Slot(gui, purpose(title))
     settings = SettingsView(app, services.runs, gui, space, case_tab, save)
     with runs:
         LibraryView(app, services.runs, gui)
@@ -91,15 +96,20 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
         titles.insert(0 if session.app.ship.hull is not None else len(titles), "Your ship")
         tabs = {title: bottom.add_tab(title) for title in titles}
         bottom.dock_below(top)
+        for title, tab in tabs.items():
+            with tab:
+                Slot(gui, purpose(title))
         RunControl(session, services.runs)
         ParallelBrushes(session)
         with pareto:
             Bridge(gui, session.gestures.receive)
+            Slot(gui, purpose("Pareto front"))
             saving = Saving(session, gui, download)
             chart = ParetoChart(session, designs, gui, saving)
             Scrubber(session, gui)
             ParetoPicking(session, designs, chart, gui)
             ToolbarView(session, designs, gui, client)
+            helping = HelpView(session, gui)
         with tabs["Design"]:
             DesignView(session, designs, gui)
         with tabs["Charts"]:
@@ -129,6 +139,7 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
             session.restore(saved, designs.again)
         select_first(session, designs)
         session.remember()
+        helping.welcome(seen=event.arg == "toured")
         theme()
 
     def theme() -> None:
@@ -152,4 +163,19 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
 
     session.gestures.on("size", "", size)
     session.hub.on(("options",), theme)
+
+    def docks() -> None:
+        """Open or close all panels, where that was asked for."""
+        nonlocal wide
+        if session.options.wide == wide:
+            return
+        wide = session.options.wide
+        for panel in (top, gui.main_panel):
+            if wide or (session.narrow and panel is not top):
+                panel.minimize()
+            else:
+                panel.expand()
+
+    wide = False
+    session.hub.on(("options",), docks)
     session.worker.latest("first selection", lambda: select_first(session, designs))

@@ -33,6 +33,7 @@ class Quantity:
         value: from an evaluation, already in ``unit``; None where it does not exist.
         group: heading in tables.
         better: -1 when smaller is better, +1 when larger is, 0 when neither.
+        formula: from other quantities, as the discipline writes it, or words; "" where the label suffices.
     """
 
     key: str
@@ -43,6 +44,7 @@ class Quantity:
     value: Callable[[Evaluation], float | None]
     group: str
     better: int = 0
+    formula: str = ""
 
     def text(self, evaluation: Evaluation) -> str:
         """The number without unit, or a dash."""
@@ -145,6 +147,7 @@ def variable_quantities(initial: DesignVariables) -> tuple[Quantity, ...]:
             item.decimals_near(value),
             _variable(item),
             "Variables",
+            formula=item.rule.meaning,
         )
         for item, value in zip(VARIABLE_TABLE.values(), initial.key(), strict=True)
     )
@@ -160,50 +163,231 @@ HULL: tuple[Quantity, ...] = (
     Quantity("length", "length between perpendiculars", "L_PP", "m", 2, _hull("length"), "Hull"),
     Quantity("breadth", "breadth", "B", "m", 2, _hull("breadth"), "Hull"),
     Quantity("hull_draft", "draft", "d", "m", 2, _hull("draft"), "Hull"),
-    Quantity("block_coefficient", "block coefficient", "C_B", "", 4, _hull("block_coefficient"), "Hull"),
-    Quantity("displaced_volume", "displaced volume", "∇", "m³", 0, _hull("displaced_volume"), "Hull"),
-    Quantity("wetted_surface", "wetted surface", "S", "m²", 0, _hull("wetted_surface"), "Hull"),
-    Quantity("lcb", "LCB forward of AP", "LCB", "m", 2, _hull("longitudinal_centre_of_buoyancy"), "Hull"),
-    Quantity("booked_cb", "booked block coefficient", "C_B booked", "", 4, _hull("booked_block_coefficient"), "Hull"),
-    Quantity("midship_coefficient", "midship coefficient", "C_M", "", 4, _hull("midship_coefficient"), "Hull"),
-    Quantity("prismatic_coefficient", "prismatic coefficient", "C_P", "", 4, _hull("prismatic_coefficient"), "Hull"),
     Quantity(
-        "waterplane_coefficient", "waterplane coefficient", "C_WP", "", 4, _hull("waterplane_coefficient"), "Hull"
+        "block_coefficient",
+        "block coefficient",
+        "C_B",
+        "",
+        4,
+        _hull("block_coefficient"),
+        "Hull",
+        formula="∇/(L_PP B d)",
+    ),
+    Quantity(
+        "displaced_volume",
+        "displaced volume",
+        "∇",
+        "m³",
+        0,
+        _hull("displaced_volume"),
+        "Hull",
+        formula="moulded, below the draft",
+    ),
+    Quantity(
+        "wetted_surface",
+        "wetted surface",
+        "S",
+        "m²",
+        0,
+        _hull("wetted_surface"),
+        "Hull",
+        formula="hull at rest, without appendages",
+    ),
+    Quantity(
+        "lcb",
+        "LCB forward of AP",
+        "LCB",
+        "m",
+        2,
+        _hull("longitudinal_centre_of_buoyancy"),
+        "Hull",
+        formula="centre of ∇, from AP",
+    ),
+    Quantity(
+        "booked_cb",
+        "booked block coefficient",
+        "C_B booked",
+        "",
+        4,
+        _hull("booked_block_coefficient"),
+        "Hull",
+        formula="affine form only: the block coefficient that is counted",
+    ),
+    Quantity(
+        "midship_coefficient",
+        "midship coefficient",
+        "C_M",
+        "",
+        4,
+        _hull("midship_coefficient"),
+        "Hull",
+        formula="A_M / (B d)",
+    ),
+    Quantity(
+        "prismatic_coefficient",
+        "prismatic coefficient",
+        "C_P",
+        "",
+        4,
+        _hull("prismatic_coefficient"),
+        "Hull",
+        formula="C_B / C_M",
+    ),
+    Quantity(
+        "waterplane_coefficient",
+        "waterplane coefficient",
+        "C_WP",
+        "",
+        4,
+        _hull("waterplane_coefficient"),
+        "Hull",
+        formula="A_WP / (L_PP B)",
     ),
 )
 
 SHIP: tuple[Quantity, ...] = (
-    Quantity("displacement_mass", "displacement", "Δ", "t", 0, _hull("displacement_mass", 1e-3), "Ship"),
-    Quantity("lightship_mass", "lightship", "Δ_light", "t", 0, _hull("lightship_mass", 1e-3), "Ship"),
-    Quantity("deadweight", "deadweight", "DWT", "t", 0, _hull("deadweight", 1e-3), "Ship", 1),
-    Quantity("kb", "centre of buoyancy above baseline", "KB", "m", 2, _hull("centre_of_buoyancy_height"), "Ship"),
-    Quantity("bm", "metacentric radius", "BM", "m", 2, _hull("metacentric_radius"), "Ship"),
-    Quantity("km", "metacentre above baseline", "KM", "m", 2, _hull("metacentre_height"), "Ship"),
-    Quantity("kg", "centre of gravity above baseline", "KG", "m", 2, _hull("centre_of_gravity_height"), "Ship"),
-    Quantity("gm", "metacentric height", "GM", "m", 2, _hull("metacentric_height"), "Ship"),
-    Quantity("fuel_per_hour", "fuel over the profile", "ṁ", "t/h", 3, _profile("fuel_per_hour", 1e-3), "Ship", -1),
-    Quantity("carbon_dioxide_per_hour", "CO2 over the profile", "ṁ_CO2", "t/h", 3,
-             _profile("carbon_dioxide_per_hour", 1e-3), "Ship", -1),
-    Quantity("attained_eedi", "attained EEDI", "EEDI", "g/(t nm)", 2,
-             _profile("attained_eedi_g_per_tonne_mile", 1.0), "Ship", -1),
-)  # fmt: skip
+    Quantity("displacement_mass", "displacement", "Δ", "t", 0, _hull("displacement_mass", 1e-3), "Ship", formula="ρ ∇"),
+    Quantity(
+        "lightship_mass",
+        "lightship",
+        "Δ_light",
+        "t",
+        0,
+        _hull("lightship_mass", 1e-3),
+        "Ship",
+        formula="the case's own, in proportion to L B depth",
+    ),
+    Quantity("deadweight", "deadweight", "DWT", "t", 0, _hull("deadweight", 1e-3), "Ship", 1, formula="Δ − Δ_light"),
+    Quantity(
+        "kb",
+        "centre of buoyancy above baseline",
+        "KB",
+        "m",
+        2,
+        _hull("centre_of_buoyancy_height"),
+        "Ship",
+        formula="centre of ∇ over the baseline",
+    ),
+    Quantity("bm", "metacentric radius", "BM", "m", 2, _hull("metacentric_radius"), "Ship", formula="I_T / ∇"),
+    Quantity("km", "metacentre above baseline", "KM", "m", 2, _hull("metacentre_height"), "Ship", formula="KB + BM"),
+    Quantity(
+        "kg",
+        "centre of gravity above baseline",
+        "KG",
+        "m",
+        2,
+        _hull("centre_of_gravity_height"),
+        "Ship",
+        formula="the case's own, in proportion to depth",
+    ),
+    Quantity("gm", "metacentric height", "GM", "m", 2, _hull("metacentric_height"), "Ship", formula="KM − KG"),
+    Quantity(
+        "fuel_per_hour",
+        "fuel over the profile",
+        "ṁ",
+        "t/h",
+        3,
+        _profile("fuel_per_hour", 1e-3),
+        "Ship",
+        -1,
+        formula="Σ w ṁ_i over the conditions",
+    ),
+    Quantity(
+        "carbon_dioxide_per_hour",
+        "CO2 over the profile",
+        "ṁ_CO2",
+        "t/h",
+        3,
+        _profile("carbon_dioxide_per_hour", 1e-3),
+        "Ship",
+        -1,
+        formula="C_F ṁ",
+    ),
+    Quantity(
+        "attained_eedi",
+        "attained EEDI",
+        "EEDI",
+        "g/(t nm)",
+        2,
+        _profile("attained_eedi_g_per_tonne_mile", 1.0),
+        "Ship",
+        -1,
+        formula="CO2 of main and auxiliary engines at 75 % MCR over capacity × speed",
+    ),
+)
 
 PROPELLER: tuple[Quantity, ...] = (
     Quantity("propeller_diameter", "diameter", "D", "m", 2, _propeller("diameter"), "Propeller"),
     Quantity("blades", "blades", "Z", "", 0, _propeller("blade_count"), "Propeller"),
-    Quantity("pitch_07", "P/D at 0.7 R", "P/D", "", 4, _propeller("pitch_diameter_ratio_07R"), "Propeller"),
-    Quantity("area_ratio", "expanded area ratio", "EAR", "", 3, _propeller("expanded_area_ratio"), "Propeller"),
-    Quantity("diameter_to_draft", "diameter / draft", "D/d", "", 3, _diameter_to_draft, "Propeller"),
-    Quantity("tip_clearance", "tip clearance to the hull", "c_tip", "m", 2, _propeller("tip_clearance"), "Propeller"),
+    Quantity(
+        "pitch_07",
+        "P/D at 0.7 R",
+        "P/D",
+        "",
+        4,
+        _propeller("pitch_diameter_ratio_07R"),
+        "Propeller",
+        formula="P_0.7 / D",
+    ),
+    Quantity(
+        "area_ratio",
+        "expanded area ratio",
+        "EAR",
+        "",
+        3,
+        _propeller("expanded_area_ratio"),
+        "Propeller",
+        formula="A_E / A_0, A_0 = π D²/4",
+    ),
+    Quantity("diameter_to_draft", "diameter / draft", "D/d", "", 3, _diameter_to_draft, "Propeller", formula="D/d"),
+    Quantity(
+        "tip_clearance",
+        "tip clearance to the hull",
+        "c_tip",
+        "m",
+        2,
+        _propeller("tip_clearance"),
+        "Propeller",
+        formula="least distance of the tips' circle to the hull",
+    ),
 )
 
 OBJECTIVES: tuple[Quantity, ...] = (
-    Quantity("f1", "first objective", "f₁", "", 4, _objective("f1"), "Objectives", -1),
-    Quantity("f2", "second objective", "f₂", "", 4, _objective("f2"), "Objectives", -1),
+    Quantity(
+        "f1",
+        "first objective",
+        "f₁",
+        "",
+        4,
+        _objective("f1"),
+        "Objectives",
+        -1,
+        formula="the case's first objective, less is better",
+    ),
+    Quantity(
+        "f2",
+        "second objective",
+        "f₂",
+        "",
+        4,
+        _objective("f2"),
+        "Objectives",
+        -1,
+        formula="the case's second objective, less is better",
+    ),
 )
 
 CONSTRAINTS: tuple[Quantity, ...] = tuple(
-    Quantity(f"g_{item.name}", item.label, item.symbol, "", 4, _constraint(item.name), CONSTRAINT_GROUP)
+    Quantity(
+        f"g_{item.name}",
+        item.label,
+        item.symbol,
+        "",
+        4,
+        _constraint(item.name),
+        CONSTRAINT_GROUP,
+        formula=f"{item.meaning} ({item.applies})".replace("_", " "),
+    )
     for item in constraints.CONSTRAINTS
 )
 
@@ -211,36 +395,72 @@ CONSTRAINTS: tuple[Quantity, ...] = tuple(
 _PARTS = ("form_resistance", "correlation_resistance", "air_resistance", "appendage_resistance")
 
 _CONDITION = (
-    ("froude_number", "Froude number", "Fn_", "", 4, 1.0, 0),
-    ("speed", "speed", "V_", "kn", 2, 1.0 / KNOT, 0),
-    ("total_resistance", "total resistance", "R_T", "kN", 0, 1e-3, -1),
-    ("friction_resistance", "friction (ITTC-57)", "R_F", "kN", 0, 1e-3, -1),
-    ("form_resistance", "form, k × friction", "R_form", "kN", 0, 1e-3, -1),
-    ("wave_resistance", "wave resistance", "R_W", "kN", 0, 1e-3, -1),
-    ("correlation_resistance", "correlation allowance", "R_A", "kN", 0, 1e-3, -1),
-    ("air_resistance", "air resistance", "R_AA", "kN", 0, 1e-3, -1),
-    ("appendage_resistance", "appendages", "R_APP", "kN", 0, 1e-3, -1),
-    ("effective_power", "effective power", "P_E", "MW", 2, 1e-6, -1),
-    ("thrust", "thrust", "T_", "kN", 0, 1e-3, 0),
-    ("torque", "torque", "Q_", "kN m", 0, 1e-3, 0),
-    ("wake_fraction", "wake fraction", "w_", "", 3, 1.0, 0),
-    ("thrust_deduction", "thrust deduction", "t_", "", 3, 1.0, 0),
-    ("advance_coefficient", "advance coefficient", "J_", "", 4, 1.0, 0),
-    ("rotation_rate_rpm", "rotation rate", "n_", "rpm", 1, 1.0, 0),
-    ("thrust_coefficient", "thrust coefficient", "K_T", "", 4, 1.0, 0),
-    ("torque_coefficient", "torque coefficient × 10", "10K_Q", "", 4, 10.0, 0),
-    ("open_water_efficiency", "open-water efficiency", "η_0", "", 4, 1.0, 1),
-    ("hull_efficiency", "hull efficiency", "η_H", "", 4, 1.0, 1),
-    ("relative_rotative_efficiency", "relative rotative efficiency", "η_R", "", 4, 1.0, 1),
-    ("propulsive_efficiency", "propulsive efficiency", "η_D", "", 4, 1.0, 1),
-    ("delivered_power", "delivered power", "P_D", "MW", 2, 1e-6, -1),
-    ("brake_power", "brake power, with sea margin", "P_B", "MW", 2, 1e-6, -1),
-    ("engine_load", "engine load", "P_B/MCR", "%", 1, 100.0, 0),
-    ("fuel_rate", "fuel", "ṁ_", "t/h", 3, 3.6, -1),
-    ("required_expanded_area_ratio", "required EAR", "EAR_req", "", 3, 1.0, 0),
-    ("cavitation_number", "cavitation number", "σ_", "", 3, 1.0, 0),
-    ("blade_cavitation_margin", "least Cp + σ on the blades (level 2)", "Cp+σ", "", 3, 1.0, 0),
-    ("blade_cavitating_share", "back below vapour pressure (level 2)", "A_cav", "%", 1, 100.0, 0),
+    ("froude_number", "Froude number", "Fn_", "", 4, 1.0, 0, "V/√(g L_PP)"),
+    ("speed", "speed", "V_", "kn", 2, 1.0 / KNOT, 0, "of the ship through calm water"),
+    ("total_resistance", "total resistance", "R_T", "kN", 0, 1e-3, -1, "(1 + k) R_F + R_W + R_A + R_AA + R_APP"),
+    ("friction_resistance", "friction (ITTC-57)", "R_F", "kN", 0, 1e-3, -1, "½ρV²S · 0.075/(log₁₀Re − 2)²"),
+    ("form_resistance", "form, k × friction", "R_form", "kN", 0, 1e-3, -1, "k R_F"),
+    (
+        "wave_resistance",
+        "wave resistance",
+        "R_W",
+        "kN",
+        0,
+        1e-3,
+        -1,
+        "level 1: Michell's integral; level 2: Rankine panels",
+    ),
+    ("correlation_resistance", "correlation allowance", "R_A", "kN", 0, 1e-3, -1, "½ρV²S C_A"),
+    ("air_resistance", "air resistance", "R_AA", "kN", 0, 1e-3, -1, "½ρ_air V² A_front C_DA"),
+    ("appendage_resistance", "appendages", "R_APP", "kN", 0, 1e-3, -1, "the case's share of R_F"),
+    ("effective_power", "effective power", "P_E", "MW", 2, 1e-6, -1, "R_T V"),
+    ("thrust", "thrust", "T_", "kN", 0, 1e-3, 0, "R_T / (1 − t)"),
+    ("torque", "torque", "Q_", "kN m", 0, 1e-3, 0, "K_Q ρ n² D⁵"),
+    ("wake_fraction", "wake fraction", "w_", "", 3, 1.0, 0, "1 − V_A / V"),
+    ("thrust_deduction", "thrust deduction", "t_", "", 3, 1.0, 0, "1 − R_T / T"),
+    ("advance_coefficient", "advance coefficient", "J_", "", 4, 1.0, 0, "V_A / (n D)"),
+    ("rotation_rate_rpm", "rotation rate", "n_", "rpm", 1, 1.0, 0, "where K_T = T/(ρ n² D⁴) on the open-water curve"),
+    ("thrust_coefficient", "thrust coefficient", "K_T", "", 4, 1.0, 0, "T/(ρ n² D⁴)"),
+    ("torque_coefficient", "torque coefficient × 10", "10K_Q", "", 4, 10.0, 0, "10 Q/(ρ n² D⁵)"),
+    ("open_water_efficiency", "open-water efficiency", "η_0", "", 4, 1.0, 1, "J K_T / (2π K_Q)"),
+    ("hull_efficiency", "hull efficiency", "η_H", "", 4, 1.0, 1, "(1 − t)/(1 − w)"),
+    (
+        "relative_rotative_efficiency",
+        "relative rotative efficiency",
+        "η_R",
+        "",
+        4,
+        1.0,
+        1,
+        "η behind the hull over η_0",
+    ),
+    ("propulsive_efficiency", "propulsive efficiency", "η_D", "", 4, 1.0, 1, "η_0 η_H η_R"),
+    ("delivered_power", "delivered power", "P_D", "MW", 2, 1e-6, -1, "P_E / η_D"),
+    ("brake_power", "brake power, with sea margin", "P_B", "MW", 2, 1e-6, -1, "P_D (1 + sea margin)/η_S"),
+    ("engine_load", "engine load", "P_B/MCR", "%", 1, 100.0, 0, "P_B over the engine's rating"),
+    ("fuel_rate", "fuel", "ṁ_", "t/h", 3, 3.6, -1, "P_B × specific consumption at that load"),
+    ("required_expanded_area_ratio", "required EAR", "EAR_req", "", 3, 1.0, 0, "by Keller's or Burrill's criterion"),
+    ("cavitation_number", "cavitation number", "σ_", "", 3, 1.0, 0, "(P_0 + ρ g h − P_V)/(½ρ((V_A)² + (0.7π n D)²))"),
+    (
+        "blade_cavitation_margin",
+        "least Cp + σ on the blades (level 2)",
+        "Cp+σ",
+        "",
+        3,
+        1.0,
+        0,
+        "blade upwards, to 0.9 R",
+    ),
+    (
+        "blade_cavitating_share",
+        "back below vapour pressure (level 2)",
+        "A_cav",
+        "%",
+        1,
+        100.0,
+        0,
+        "area with Cp < −σ over the back's",
+    ),
 )
 
 
@@ -260,7 +480,7 @@ def condition_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
     """The numbers of each operating condition, under its name (see ``condition_names``)."""
     made = []
     for index, words in enumerate(names):
-        for name, label, symbol, unit, decimals, scale, better in _CONDITION:
+        for name, label, symbol, unit, decimals, scale, better, formula in _CONDITION:
             made.append(
                 Quantity(
                     f"{name}_{index + 1}",
@@ -271,6 +491,7 @@ def condition_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
                     _condition(index, name, scale),
                     f"Condition {index + 1}: {words}",
                     better,
+                    formula,
                 )
             )
     return tuple(made)

@@ -102,9 +102,11 @@
   H.browser = (storage && storage.getItem("hpsop-browser")) ||
     Array.from(crypto.getRandomValues(new Uint8Array(12)), (b) => b.toString(16).padStart(2, "0")).join("");
   if (storage) storage.setItem("hpsop-browser", H.browser);
+  // the tour is offered once a browser; where nothing can be kept, not at all
+  H.toured = () => { try { return window.localStorage.getItem("hpsop-toured") === "1"; } catch (e) { return true; } };
   H.connect = function (channelId) {
     if (H.channelId !== channelId) { H.channelId = channelId; H.outbox = []; }
-    H.send({ t: "hello", browser: H.browser, width: innerWidth, height: innerHeight });
+    H.send({ t: "hello", browser: H.browser, width: innerWidth, height: innerHeight, arg: H.toured() ? "toured" : "" });
     place();
     title();
     // panels mount one after another
@@ -236,6 +238,8 @@
   let pressed = null;
   function act(button, shift) {
     if (!button || button.getAttribute("aria-disabled") === "true") return;
+    if (button.dataset.act === "tour" && button.dataset.arg === "end")
+      try { window.localStorage.setItem("hpsop-toured", "1"); } catch (e) { /* it is offered again */ }
     H.send({ t: "act", name: button.dataset.act, arg: button.dataset.arg || "", shift });
   }
   listen(document, "pointerdown", (event) => {
@@ -355,6 +359,7 @@
 
   // ---- overlays: pieces of HTML that stand over the 3D view instead of in a panel ---------------------------------
   const frames = {};
+  const TITLES = { toolbar: "what the 3D view shows", card: "the design shown", help: "help", tour: "tour of the page" };
   H.overlay = function (marker) {
     const source = marker.previousElementSibling;
     marker.remove();
@@ -364,14 +369,44 @@
       frames[name] = document.createElement("div");
       frames[name].className = "hpsop-overlay hpsop-overlay-" + name;
       frames[name].setAttribute("role", "region");
-      frames[name].setAttribute("aria-label", name === "toolbar" ? "what the 3D view shows" : "the design shown");
+      frames[name].setAttribute("aria-label", TITLES[name] || name);
       document.body.appendChild(frames[name]);
       disposers.push(() => frames[name].remove());
     }
     frames[name].innerHTML = source.innerHTML;
     frames[name].style.display = source.innerHTML.trim() ? "block" : "none";
     place();
+    if (name === "tour") point();
+    // who opened the help with the keyboard goes on in it
+    if (name === "help" && source.innerHTML.trim()) frames[name].querySelector("[tabindex]").focus();
   };
+  // ---- what a step of the tour points at: an outline around it, of a selector or of the tabs with "tab:Design" among them
+  const outline = document.createElement("div");
+  outline.className = "hpsop-point";
+  document.body.appendChild(outline);
+  disposers.push(() => outline.remove());
+  function point() {
+    const card = frames.tour && frames.tour.querySelector("[data-point]");
+    const wanted = card ? card.dataset.point : "";
+    const node = wanted.startsWith("tab:")
+      ? Array.from(document.querySelectorAll("[role=tab]")).find((tab) => tab.textContent.trim() === wanted.slice(4))
+      : wanted && document.querySelector(wanted);
+    const box = node && node.getBoundingClientRect();
+    outline.style.display = box && box.width ? "block" : "none";
+    if (!box) return;
+    outline.style.left = box.left - 4 + "px"; outline.style.top = box.top - 4 + "px";
+    outline.style.width = box.width + 8 + "px"; outline.style.height = box.height + 8 + "px";
+  }
+  // ---- a label tells what its widget's hint tells: viser shows hints over the widget alone --------------------------
+  listen(document, "pointerover", (event) => {
+    const label = event.target.closest && event.target.closest("label[for]");
+    if (!label || label.dataset.told) return;
+    const word = label.textContent.replace("●", "").trim();
+    for (const source of document.querySelectorAll("[data-hints]")) {
+      const hint = JSON.parse(source.dataset.hints)[word];
+      if (hint) { label.title = hint; label.dataset.told = "1"; return; }
+    }
+  }, true);
   function place() {
     // The 3D view is what the docks leave free: walk in from both sides along the middle line of the window.
     const canvas = document.querySelector("canvas");
@@ -389,7 +424,7 @@
     document.documentElement.style.setProperty("--hpsop-left", left + "px");
     document.documentElement.style.setProperty("--hpsop-right", innerWidth - right + "px");
   }
-  const ticker = setInterval(() => { place(); title(); names(); }, 700);
+  const ticker = setInterval(() => { place(); point(); title(); names(); }, 700);
   disposers.push(() => clearInterval(ticker));
   let resizeTimer = null;
   listen(window, "resize", () => {

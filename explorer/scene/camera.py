@@ -7,7 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-PRESETS = ("perspective", "below", "profile", "plan", "body", "propeller")
+PRESETS = ("perspective", "below", "profile", "plan", "body", "propeller", "backs")
+CLOSE_UPS = ("propeller", "backs")
 TITLES = {
     "perspective": "Perspective",
     "below": "From below",
@@ -15,6 +16,7 @@ TITLES = {
     "plan": "Plan",
     "body": "Body",
     "propeller": "Propeller",
+    "backs": "Blade backs",
 }
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]
@@ -53,10 +55,12 @@ def preset(
         aspect: width over height of the 3D view.
         abeam: how far to port another ship lies, m.
     """
-    if name == "propeller":
+    if name in CLOSE_UPS:
         look = (shaft[0] + 0.05 * diameter, 0.0, shaft[1] + 0.02 * diameter)
         reach = 2.0 * diameter * max(1.0, 1.1 / max(aspect, 0.3))
-        return CameraPose((look[0] - 0.86 * reach, -0.52 * reach, look[2] + 0.10 * reach), look, _UP, 0.75)
+        # from astern the blades show their faces, from ahead their backs
+        along = 0.86 if name == "backs" else -0.86
+        return CameraPose((look[0] + along * reach, -0.52 * reach, look[2] + 0.10 * reach), look, _UP, 0.75)
     # what has to be seen: from the counter to the bulb, from the keel to the deck of the parent
     x0, x1, deck = -0.03 * length, 1.025 * length, 2.4 * draft
     corners = np.array([(x, y, z) for x in (x0, x1) for y in (-breadth / 2, breadth / 2 + abeam) for z in (0.0, deck)])
@@ -70,6 +74,24 @@ def preset(
         "below": ((0.9, -0.9 * side, -0.42), _UP, 0.75),
     }.get(name, ((0.9, -0.9 * side, 0.40), _UP, 0.75))
     return _framed(corners, np.array(direction), up, lens, aspect)
+
+
+def nearest_seen(position: Point, framed: tuple[float, float, float], abeam: float = 0.0) -> float:
+    """Where a camera may begin to see: a part of its distance from the box that holds the ship, and never far from it.
+
+    The farther away it begins, the finer a graphics card tells two surfaces apart that lie close to each other.
+
+    Args:
+        position: the camera's, m.
+        framed: length, breadth and draft of the ship, m.
+        abeam: how far to port another ship lies, m.
+    """
+    length, breadth, draft = framed
+    low = np.array([-0.03 * length, -0.6 * breadth, 0.0])
+    high = np.array([1.04 * length, 0.6 * breadth + abeam, 4.5 * draft])
+    place = np.array(position)
+    distance = float(np.linalg.norm(place - np.clip(place, low, high)))
+    return max(0.15 * distance, 0.0015 * length)
 
 
 def _framed(corners: Array, direction: Array, up: Point, lens: float, aspect: float) -> CameraPose:

@@ -7,6 +7,8 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
+from explorer.scene.furniture import Boxes, deck_furniture, rudder
+from explorer.scene.paint import boot_top, draught_marks, shadow, walls_and_deck
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.evaluation.curves import HullLines
@@ -23,15 +25,17 @@ class SceneGeometry:
     """What the page draws of a design.
 
     Attributes:
-        underwater, topsides: vertices and faces, fixed topology.
+        underwater, topsides, deck: vertices and faces, fixed topology; the topsides are without the deck.
         blades, hub: vertices about the hub's centre, turning about x, and faces.
         propeller_position: of the hub's centre.
         waterline: (n, 3) closed.
         length, breadth, draft, diameter: m.
+        boot_top, marks, rudder, shadow, boxes: for looks alone (``scene.paint``, ``scene.furniture``).
     """
 
     underwater: Mesh
     topsides: Mesh
+    deck: Mesh
     blades: Mesh
     hub: Mesh
     propeller_position: tuple[float, float, float]
@@ -40,6 +44,11 @@ class SceneGeometry:
     breadth: float
     draft: float
     diameter: float
+    boot_top: Mesh
+    marks: Mesh
+    rudder: Mesh
+    shadow: Mesh
+    boxes: Boxes
 
 
 def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
@@ -59,9 +68,12 @@ def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
     port = port + np.array([0.0, 0.06])  # just outside the hull, or it would drown in it
     line = np.concatenate([port, port[::-1] * np.array([1.0, -1.0])])
     waterline = np.column_stack([line, np.full(len(line), hull.draft)])
+    underwater, above = parts.get("underwater", empty), parts.get("topsides", empty)
+    walls, deck = walls_and_deck(hull, above)
     return SceneGeometry(
-        underwater=parts.get("underwater", empty),
-        topsides=parts.get("topsides", empty),
+        underwater=underwater,
+        topsides=walls,
+        deck=deck,
         blades=(blades[0] @ turn, blades[1]),
         hub=(hub[0] @ turn, hub[1]),
         propeller_position=(float(position[0]), float(position[1]), float(position[2])),
@@ -70,6 +82,11 @@ def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
         breadth=hull.breadth,
         draft=hull.draft,
         diameter=propeller.diameter,
+        boot_top=boot_top(hull),
+        marks=draught_marks(hull),
+        rudder=rudder(underwater[0], float(position[0]), float(position[2]), propeller.diameter),
+        shadow=shadow(waterline, hull.depth - hull.draft),
+        boxes=deck_furniture(hull),
     )
 
 
@@ -83,11 +100,3 @@ def ghost_segments(lines: HullLines, waterline: NDArray[np.float64]) -> NDArray[
                 points = np.column_stack([np.full(len(part), x), side * part[:, 0], part[:, 1]])
                 pieces.append(np.stack([points[:-1], points[1:]], axis=1))
     return np.concatenate(pieces)
-
-
-def without_deck(topsides: Mesh) -> Mesh:
-    """A ghost's topsides: two decks at nearly one height would only flicker through each other."""
-    vertices, faces = topsides
-    height = vertices[:, 2]
-    top = height.max()
-    return vertices, faces[~(height[faces] > top - 1e-4 * abs(top)).all(axis=1)]

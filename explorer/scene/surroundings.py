@@ -1,26 +1,40 @@
-"""What stands around the ship: calm water that ends softly, and a quiet background for the light and the dark page."""
+"""What stands around the ship: calm water that ends softly, and a sky for the light and the dark page."""
 
 from __future__ import annotations
+
+from typing import Any
 
 import numpy as np
 import trimesh
 from numpy.typing import NDArray
 from PIL import Image
 
-_WATER = (86, 146, 186)
-_OPACITY = 0.42
-_TEXELS = 192
-# The background from the upper to the lower edge; banding shows where the steps are larger than a grey level.
-_SKY = {False: ((226, 234, 242), (250, 251, 252)), True: ((24, 28, 34), (44, 51, 60))}
+_WATER = (34, 94, 132)
+_OPACITY = 0.52
+_TEXELS = 384
+# ripples: lengths over the sheet's half width, the wind's direction, and how much of the light they take
+_RIPPLES, _WIND, _CONTRAST = (0.028, 0.12), 0.7, 34.0
+_SHADES = 16
+# The sky's colours from nadir over horizon to zenith, by the sine of the height; under the horizon lies more sea than
+# is drawn. viser's tone mapping turns grey what is brighter than these.
+_HEIGHTS = (-1.0, -0.25, -0.02, 0.02, 0.30, 1.0)
+_SKY = {
+    False: ((198, 214, 223), (188, 208, 221), (164, 196, 216), (211, 218, 223), (176, 203, 224), (128, 172, 218)),
+    True: ((20, 26, 33), (22, 30, 38), (26, 36, 46), (48, 57, 67), (32, 39, 48), (20, 24, 30)),
+}
 
 
 def calm_water() -> trimesh.Trimesh:
-    """A sheet from -1 to 1 at z = 0 whose opacity falls to nothing at its rim: a sea has no edge."""
+    """A sheet from -1 to 1 at z = 0, rippled, whose opacity falls to nothing at its rim: a sea has no edge.
+
+    The ripples are paint: what waves the ship makes is another drawing.
+    """
     place = (np.arange(_TEXELS) + 0.5) / _TEXELS * 2.0 - 1.0
     radius = np.hypot(*np.meshgrid(place, place))
     fade = np.clip((1.0 - radius) / 0.6, 0.0, 1.0)
     texture = np.zeros((_TEXELS, _TEXELS, 4), dtype=np.uint8)
-    texture[..., :3] = _WATER
+    light = _CONTRAST * _ripples(place)
+    texture[..., :3] = np.clip(np.array(_WATER) + light[..., None] * np.array([0.8, 1.0, 1.0]), 0.0, 255.0)
     texture[..., 3] = np.round(255.0 * _OPACITY * fade**2 * (3.0 - 2.0 * fade))
     corners = np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])
     material = trimesh.visual.material.PBRMaterial(
@@ -38,9 +52,41 @@ def calm_water() -> trimesh.Trimesh:
     )
 
 
-def backdrop(dark: bool) -> NDArray[np.uint8]:
-    """The background as a small RGB image."""
-    upper, lower = (np.array(colour, dtype=float) for colour in _SKY[dark])
-    down = np.linspace(0.0, 1.0, 256)[:, None]
-    column = np.round(upper + (lower - upper) * down).astype(np.uint8)
-    return np.repeat(column[:, None, :], 4, axis=1)
+def _ripples(place: NDArray[np.float64]) -> NDArray[np.float64]:
+    """Light on a slightly moved surface, -1 to 1 in steps, on the square of these places; the same every time."""
+    chance = np.random.default_rng(20)
+    x, y = np.meshgrid(place, place)
+    slope = np.zeros_like(x)
+    for length in np.geomspace(*_RIPPLES, 24):
+        angle, phase = _WIND + chance.normal(0.0, 0.5), chance.uniform(0.0, 2.0 * np.pi)
+        slope += np.cos(2.0 * np.pi / length * (np.cos(angle) * x + np.sin(angle) * y) + phase)
+    slope /= np.abs(slope).max()
+    # few shades: the picture travels to the browser
+    return np.asarray(np.round(slope * 0.5 * _SHADES) / (0.5 * _SHADES))
+
+
+def sky(dark: bool) -> bytes:
+    """A sphere of radius 1 with the sky on its inside, lit by itself, as a GLB file."""
+    sphere = trimesh.creation.uv_sphere(radius=1.0, count=(24, 24))
+    height = np.linspace(1.0, -1.0, 512)
+    colours = np.array(_SKY[dark], dtype=float)
+    column = np.stack([np.interp(height, _HEIGHTS, colours[:, channel]) for channel in range(3)], axis=-1)
+    picture = np.repeat(np.round(column).astype(np.uint8)[:, None, :], 4, axis=1)
+    material = trimesh.visual.material.PBRMaterial(
+        baseColorTexture=Image.fromarray(picture, "RGB"), doubleSided=True, metallicFactor=0.0, roughnessFactor=1.0
+    )
+    uv = np.column_stack([np.full(len(sphere.vertices), 0.5), 0.5 + 0.499 * sphere.vertices[:, 2]])
+    shell = trimesh.Trimesh(
+        sphere.vertices,
+        sphere.faces,
+        visual=trimesh.visual.TextureVisuals(uv=uv, material=material),
+        process=False,
+    )
+    return trimesh.exchange.gltf.export_glb(trimesh.Scene(shell), tree_postprocessor=_unlit)
+
+
+def _unlit(tree: dict[str, Any]) -> None:
+    """Colours as they are, whatever lamps there are."""
+    tree["extensionsUsed"] = [*tree.get("extensionsUsed", []), "KHR_materials_unlit"]
+    for material in tree["materials"]:
+        material["extensions"] = {"KHR_materials_unlit": {}}

@@ -48,11 +48,15 @@ def wave_surface(field: WaveField) -> WaveSurface:
         faces = faces[:, ::-1]
     port = np.stack([x, y, field.draft + elevation], axis=-1).reshape(-1, 3)
     heights, opacity = elevation.ravel(), _soft_rim(x, y).ravel()
+    # both sides share the points on the centreplane, or the light would show a seam there
+    off = np.flatnonzero(port[:, 1] != 0.0)
+    mirrored = np.arange(nx * ny)
+    mirrored[off] = nx * ny + np.arange(len(off))
     return WaveSurface(
-        np.concatenate([port, port * np.array([1.0, -1.0, 1.0])]),
-        np.concatenate([faces, faces[:, ::-1] + nx * ny]),
-        np.concatenate([heights, heights]),
-        np.concatenate([opacity, opacity]),
+        np.concatenate([port, port[off] * np.array([1.0, -1.0, 1.0])]),
+        np.concatenate([faces, mirrored[faces[:, ::-1]]]),
+        np.concatenate([heights, heights[off]]),
+        np.concatenate([opacity, opacity[off]]),
         _note(field),
     )
 

@@ -24,11 +24,12 @@ from urllib.parse import parse_qsl, urlencode, urlsplit
 from websockets import Headers
 from websockets.http11 import Request, Response
 
+from explorer.server.bridge import page_style
 from explorer.server.notices import Notices
 from hpsop_core.errors import InputError
 from hpsop_core.markup import fill
 
-_SCRIPT = "hpsop-access.js"
+_SCRIPT, _STYLE = "hpsop-access.js", "hpsop-page.css"
 _YEAR = 365 * 24 * 3600
 _HOST = re.compile(r"(?:[A-Za-z0-9._-]{1,253}|\[[0-9A-Fa-f:.]{2,45}\])(?::[0-9]{1,5})?")
 _ORIGIN = re.compile(rf"(https?)://({_HOST.pattern})")
@@ -111,6 +112,10 @@ class Access:
             return self._welcome(kept, bool(in_address))
         if urlsplit(request.path).path == f"/{_SCRIPT}":
             return self._script(host)
+        if urlsplit(request.path).path == f"/{_STYLE}":
+            response = _text(HTTPStatus.OK, page_style())
+            response.headers["Content-Type"] = "text/css; charset=utf-8"
+            return response
         response = answer(connection, request)
         if response is not None and response.headers.get("Content-Type", "").startswith("text/html"):
             self._add_script(response)
@@ -180,7 +185,8 @@ class Access:
         body = bytes(response.body)
         if zipped not in self._page:
             plain = gzip.decompress(body) if zipped else body
-            plain = plain.replace(b"<head>", f'<head><script src="{_SCRIPT}"></script>'.encode(), 1)
+            ours = f'<head><script src="{_SCRIPT}"></script><link rel="stylesheet" href="{_STYLE}">'
+            plain = plain.replace(b"<head>", ours.encode(), 1).replace(b"<title>Viser<", b"<title>hpsop<", 1)
             self._page[zipped] = gzip.compress(plain) if zipped else plain
         response.body = self._page[zipped]
         del response.headers["Content-Length"]

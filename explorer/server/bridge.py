@@ -119,10 +119,8 @@ class Bridge:
         Slot(
             gui,
             fill(
-                '<div class="hpsop-root"></div><style>{}\n{}\n{}</style>'
+                '<div class="hpsop-root"></div><style>{}</style>'
                 '<img alt="" style="display:none" src="data:," onerror="{}">',
-                Markup(_asset("page.css")),
-                Markup(style_sheet(SCREEN)),
                 hide_row,
                 script,
             ),
@@ -179,6 +177,11 @@ def tooltip(chart: str, content: Markup, serial: int) -> Markup:
         serial,
         content,
     )
+
+
+def page_style() -> str:
+    """The page's style sheet; it stands in the page's head (``access``), before anything that it dresses."""
+    return f"{_asset('page.css')}\n{style_sheet(SCREEN)}"
 
 
 def _asset(name: str) -> str:

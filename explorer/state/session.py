@@ -124,7 +124,7 @@ class Session:
     @property
     def left_dock(self) -> int:
         """Width of the left dock in px, as the page puts it."""
-        return 0 if self.narrow else LEFT_DOCK
+        return 0 if self.narrow or self.options.wide else LEFT_DOCK
 
     @property
     def chart_width(self) -> float:

@@ -11,7 +11,8 @@ class ViewOptions:
     """What of the design is drawn in 3D; belongs to a browser.
 
     ``ghost_of`` is "initial" or the ``name`` of a pinned design; a pin that is gone means the initial design.
-    ``beside`` puts the ghost abeam, to port, where neither hull hides the other.
+    ``beside`` puts the ghost abeam, to port, where neither hull hides the other. ``fittings`` are
+    for looks: deck house, cargo, rudder, draught marks. ``wide``: the panels are closed, the ship has the whole window.
     """
 
     ghost: bool = False
@@ -20,10 +21,13 @@ class ViewOptions:
     waves: bool = False
     pressure: bool = False
     spin: bool = False
+    hull: bool = True
     topsides: bool = True
+    fittings: bool = True
     water: bool = True
     condition: int = 0
     camera: str = "perspective"
+    wide: bool = False
     dark: bool = False
 
     def restored(self, saved: object) -> ViewOptions:

@@ -8,6 +8,7 @@ from typing import Any
 import numpy as np
 import trimesh
 import viser
+from numpy.typing import NDArray
 
 from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, pressure_legend, sea_legend
 from explorer.scene.pressure import PressureMap
@@ -21,6 +22,8 @@ from hpsop_core.markup import Markup
 
 # the hull's underwater part stays visible, faintly
 _WATER_OPACITY = 0.9
+# around what evaporates: no colour of the pressure scale
+_VAPOUR = (20, 20, 24)
 
 
 class OverlayView:
@@ -49,7 +52,7 @@ class OverlayView:
         index = min(options.condition, len(shown.evaluation.conditions) - 1)
         key = (shown.key, index, session.picture.case)
         self._one("waves", options.waves, key, lambda: self._waves(shown, index))
-        self._one("pressure", options.pressure, key, lambda: self._pressure(shown, index))
+        self._one("pressure", options.pressure and options.hull, key, lambda: self._pressure(shown, index))
         self._one("blades", options.pressure, key, lambda: self._blades(shown, index))
 
     def _one(self, name: str, wanted: bool, key: tuple[object, ...], make: Callable[[], None]) -> None:
@@ -69,9 +72,9 @@ class OverlayView:
             session.notify(f"No {name} for this design", str(error), "yellow")
 
     def _remove(self, name: str) -> None:
-        node = self._nodes.pop(name, None)
-        if node is not None:
-            node.remove()
+        self._drop(name)
+        if name == "blades":
+            self._drop("vapour")
         self._drawn.pop(name, None)
         self._session.set_legend(name, None)
 
@@ -91,6 +94,22 @@ class OverlayView:
     def _blades(self, shown: Shown, index: int) -> None:
         found = self._designs.blade_pressure(shown.evaluation, index)
         self._map("blades", "/ship/propeller/pressure", found, Markup("blade pressure C<sub>p</sub> [–]"))
+        self._outline(found.evaporating())
+
+    def _outline(self, edge: NDArray[np.float64]) -> None:
+        """The edge of the area below vapour pressure, drawn on the blades."""
+        if not len(edge):
+            self._drop("vapour")
+            return
+        colours = np.full((len(edge), 2, 3), _VAPOUR, dtype=np.uint8)
+        self._nodes["vapour"] = self._client.scene.add_line_segments(
+            "/ship/propeller/vapour", edge.astype(np.float32), colours, thickness=2.5, thickness_units="screen"
+        )
+
+    def _drop(self, name: str) -> None:
+        node = self._nodes.pop(name, None)
+        if node is not None:
+            node.remove()
 
     def _map(self, name: str, node: str, found: PressureMap, title: Markup) -> None:
         limits = around_zero(found.coefficient, found.areas())

@@ -6,31 +6,37 @@ import math
 import threading
 import time
 from collections import deque
-from typing import Any
 
 import numpy as np
 import viser
 
-from explorer.scene.camera import PRESETS, preset
-from explorer.scene.geometry import SceneGeometry, without_deck
-from explorer.scene.surroundings import backdrop, calm_water
+from explorer.scene.camera import CLOSE_UPS, PRESETS, nearest_seen, preset
+from explorer.scene.geometry import SceneGeometry
+from explorer.scene.nodes import Nodes
+from explorer.scene.surroundings import calm_water, sky
 from explorer.server.bridge import PageEvent
 from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.views.on_display import ghost_of
 from hpsop_core.errors import HpsopError
 
-UNDERWATER = (176, 84, 66)
-TOPSIDES = (92, 112, 134)
+UNDERWATER = (182, 62, 46)
+TOPSIDES = (54, 74, 102)
+DECK = (126, 128, 122)
+BOOT_TOP = (240, 238, 230)
+MARKS = (236, 236, 228)
+RUDDER = (158, 58, 46)
+SHADOW = (12, 34, 58)
 BRONZE = (196, 150, 72)
 HUB = (150, 118, 66)
 # the initial design's grey and the pins' colours on the charts (assets/page.css)
 GHOST = (107, 119, 133)
 PINS = ((11, 114, 133), (166, 30, 77), (92, 148, 13), (134, 46, 156))
-WATERLINE = (235, 240, 245)
 # the sea reaches this many ship lengths from midships
 _SEA_LENGTHS = 1.15
-_GHOST_OPACITY = 0.28
+_SKY_LENGTHS = 100.0
+_GHOST_OPACITY = 0.17
+_SHADOW_OPACITY = 0.3
 # a ghost beside the selected ship lies this many breadths to port, and is nearly solid
 _ABEAM, _ABEAM_OPACITY = 1.5, 0.85
 # the propeller turns at a quarter of its real rate: a screen cannot show 100 rpm of five blades
@@ -45,8 +51,10 @@ class SceneView:
         self._session = session
         self._designs = designs
         self._client = client
-        self._handles: dict[str, Any] = {}
-        self._faces: dict[str, int] = {}
+        self._nodes = Nodes(client)
+        self._sea: viser.GlbHandle | None = None
+        self._sky: viser.GlbHandle | None = None
+        self._sky_radius = 1.0
         self._drawn: tuple[object, ...] = ()
         self._geometry: SceneGeometry | None = None
         self._framed: tuple[float, float, float] | None = None
@@ -55,6 +63,7 @@ class SceneView:
         self._framed_for = 0.0
         self._told, self._docked = 0.0, False
         self._abeam = 0.0
+        self._hidden_for_backs = False
         self._spinning = threading.Event()
         self._dark: bool | None = None
         client.scene.configure_default_lights(cast_shadow=False)
@@ -78,7 +87,11 @@ class SceneView:
         shown, options = session.selected, session.options
         if options.dark != self._dark:
             self._dark = options.dark
-            self._client.scene.set_background_image(backdrop(options.dark), format="png")
+            if self._sky is not None:
+                self._sky.remove()
+            self._sky = self._client.scene.add_glb(
+                "/sky", sky(options.dark), scale=self._sky_radius, cast_shadow=False, receive_shadow=False
+            )
         if shown is None:
             return
         ghost, pin = ghost_of(session, self._designs)
@@ -89,11 +102,13 @@ class SceneView:
             ghost.key if ghost else None,
             ghost_colour,
             options.beside,
+            options.hull,
             options.topsides,
+            options.fittings,
             options.water,
             options.waves,
             options.pressure,
-            options.camera == "propeller",
+            options.camera in CLOSE_UPS,
             session.picture.case,
         )
         if state != self._drawn:
@@ -123,115 +138,66 @@ class SceneView:
         ghost: tuple[SceneGeometry, np.ndarray] | None,
         ghost_colour: tuple[int, int, int],
     ) -> None:
-        options = self._session.options
-        close_up = options.camera == "propeller"
-        self._mesh(
-            "underwater", "/ship/underwater", *geometry.underwater, color=UNDERWATER, visible=not options.pressure
-        )
-        self._mesh("topsides", "/ship/topsides", *geometry.topsides, color=TOPSIDES, visible=options.topsides)
-        frame = self._handles.get("propeller frame")
-        if frame is None:
-            frame = self._client.scene.add_frame("/ship/propeller", show_axes=False)
-            self._handles["propeller frame"] = frame
-        frame.position = geometry.propeller_position
-        self._mesh("blades", "/ship/propeller/blades", *geometry.blades, color=BRONZE, visible=not options.pressure)
-        self._mesh("hub", "/ship/propeller/hub", *geometry.hub, color=HUB)
-        self._lines("waterline", "/ship/waterline", geometry.waterline, WATERLINE)
-        self._water(geometry, options.water and not close_up and not options.waves)
+        options, nodes = self._session.options, self._nodes
+        close_up = options.camera in CLOSE_UPS
+        above, fitted = options.hull and options.topsides, options.hull and options.fittings
+        below = options.hull and not options.pressure
+        nodes.mesh("/ship/underwater", *geometry.underwater, color=UNDERWATER, visible=below)
+        nodes.mesh("/ship/topsides", *geometry.topsides, color=TOPSIDES, visible=above)
+        nodes.mesh("/ship/deck", *geometry.deck, color=DECK, visible=above)
+        nodes.mesh("/ship/boot_top", *geometry.boot_top, color=BOOT_TOP, visible=above)
+        nodes.mesh("/ship/marks", *geometry.marks, color=MARKS, visible=above and fitted and below)
+        nodes.mesh("/ship/rudder", *geometry.rudder, color=RUDDER, visible=fitted and below)
+        nodes.boxes("/ship/fittings", geometry.boxes, visible=above and fitted)
+        nodes.frame("/ship/propeller", geometry.propeller_position)
+        nodes.mesh("/ship/propeller/blades", *geometry.blades, color=BRONZE, visible=not options.pressure)
+        nodes.mesh("/ship/propeller/hub", *geometry.hub, color=HUB)
+        calm = options.water and not close_up and not options.waves
+        self._water(geometry, calm)
+        nodes.mesh("/shadow", *geometry.shadow, color=SHADOW, opacity=_SHADOW_OPACITY, visible=calm and above)
         if ghost is not None:
             shell, lines = ghost
-            berth = self._handles.get("berth")
-            if berth is None:
-                berth = self._handles["berth"] = self._client.scene.add_frame("/ghost", show_axes=False)
-            berth.position = (0.0, self._abeam, 0.0)
+            nodes.frame("/ghost", (0.0, self._abeam, 0.0))
             opacity = _ABEAM_OPACITY if options.beside else _GHOST_OPACITY
-            topsides = shell.topsides if options.beside else without_deck(shell.topsides)
-            self._mesh("ghost below", "/ghost/below", *shell.underwater, color=ghost_colour, opacity=opacity)
-            self._mesh(
-                "ghost above",
-                "/ghost/above",
-                *topsides,
-                color=ghost_colour,
-                opacity=opacity,
-                visible=options.topsides,
-            )
-            self._lines("ghost lines", "/ghost/lines", lines, ghost_colour, 1.0)
-            self._handles["ghost lines"].visible = True
-        else:
-            for name in ("ghost below", "ghost above", "ghost lines"):
-                if name in self._handles:
-                    self._handles[name].visible = False
-
-    def _mesh(
-        self,
-        key: str,
-        name: str,
-        vertices: np.ndarray,
-        faces: np.ndarray,
-        color: tuple[int, int, int],
-        opacity: float | None = None,
-        visible: bool = True,
-    ) -> None:
-        handle = self._handles.get(key)
-        topology = hash((len(vertices), faces.tobytes()))
-        if handle is None or self._faces.get(key) != topology:
-            if handle is not None:
-                handle.remove()
-            handle = self._client.scene.add_mesh_simple(
-                name,
-                vertices.astype(np.float32),
-                faces.astype(np.uint32),
-                color=color,
-                opacity=opacity,
-                side="double",
-                cast_shadow=False,
-                receive_shadow=False,
-            )
-            self._handles[key], self._faces[key] = handle, topology
-        else:
-            handle.vertices = vertices.astype(np.float32)
-            if tuple(handle.color) != color:
-                handle.color = color
-            if handle.opacity != opacity:
-                handle.opacity = opacity
-        if handle.visible != visible:
-            handle.visible = visible
+            nodes.mesh("/ghost/below", *shell.underwater, color=ghost_colour, opacity=opacity)
+            nodes.mesh("/ghost/above", *shell.topsides, color=ghost_colour, opacity=opacity, visible=options.topsides)
+            # two decks at nearly one height would only flicker through each other
+            deck = options.topsides and options.beside
+            nodes.mesh("/ghost/deck", *shell.deck, color=ghost_colour, opacity=opacity, visible=deck)
+            nodes.lines("/ghost/lines", lines, ghost_colour, 1.0)
+        for name in ("/ghost/below", "/ghost/above", "/ghost/deck", "/ghost/lines"):
+            if ghost is None:
+                nodes.show(name, False)
+            elif name in ("/ghost/below", "/ghost/lines"):
+                nodes.show(name, options.hull)
+            elif not options.hull:
+                nodes.show(name, False)
 
     def _water(self, geometry: SceneGeometry, visible: bool) -> None:
-        handle = self._handles.get("water")
-        if handle is None:
-            handle = self._client.scene.add_mesh_trimesh(
+        if self._sea is None:
+            self._sea = self._client.scene.add_mesh_trimesh(
                 "/water", calm_water(), cast_shadow=False, receive_shadow=False
             )
-            self._handles["water"] = handle
-        handle.position = (0.5 * geometry.length, 0.0, geometry.draft)
-        handle.scale = _SEA_LENGTHS * geometry.length
-        if handle.visible != visible:
-            handle.visible = visible
-
-    def _lines(
-        self, key: str, name: str, points: np.ndarray, color: tuple[int, int, int], thickness: float = 1.5
-    ) -> None:
-        handle = self._handles.get(key)
-        segments = (points if points.ndim == 3 else np.stack([points[:-1], points[1:]], axis=1)).astype(np.float32)
-        if handle is not None and handle.points.shape == segments.shape:
-            handle.points = segments
-            handle.colors = np.full((len(segments), 2, 3), color, dtype=np.uint8)
-            return
-        if handle is not None:
-            handle.remove()
-        self._handles[key] = self._client.scene.add_line_segments(
-            name,
-            segments,
-            np.full((len(segments), 2, 3), color, dtype=np.uint8),
-            thickness=thickness,
-            thickness_units="screen",
-        )
+        if self._sky is not None:
+            self._sky_radius = _SKY_LENGTHS * geometry.length
+            self._sky.scale = self._sky_radius
+            self._sky.position = (0.5 * geometry.length, 0.0, geometry.draft)
+        self._sea.position = (0.5 * geometry.length, 0.0, geometry.draft)
+        self._sea.scale = _SEA_LENGTHS * geometry.length
+        if self._sea.visible != visible:
+            self._sea.visible = visible
 
     # ---- camera ----------------------------------------------------------------------------------------------------
     def _camera(self, event: PageEvent) -> None:
         if event.arg in PRESETS:
-            self._session.set_options(camera=event.arg)
+            options = self._session.options
+            hull = options.hull
+            if event.arg == "backs":
+                # they look forward, at the hull
+                hull, self._hidden_for_backs = False, hull
+            elif self._hidden_for_backs:
+                hull, self._hidden_for_backs = True, False
+            self._session.set_options(camera=event.arg, hull=hull)
             self.place_camera()
 
     def _unmoved(self) -> bool:
@@ -248,7 +214,8 @@ class SceneView:
     def _between_docks(self) -> float:
         session = self._session
         width, height = session.size
-        return max(width - session.left_dock - session.dock_width, 200.0) / max(height, 200.0)
+        right = 0 if session.options.wide else session.dock_width
+        return max(width - session.left_dock - right, 200.0) / max(height, 200.0)
 
     def _looked(self, camera: viser.CameraHandle) -> None:
         """The browser says where its camera is: a view of another shape is framed anew, unless the user has moved."""
@@ -256,9 +223,19 @@ class SceneView:
         # one dock appears after the other, and a browser does not say so while its camera rests
         self._docked = self._docked or 0.0 < self._told < 1.1 * self._between_docks()
         # a browser's first word is where its camera stood before it heard of ours
+        self._refocus(camera)
         other = self._docked and abs(self._told - self._framed_for) > 0.02 * self._told and self._unmoved()
         if first or other:
             self._session.worker.latest("camera", self.place_camera)
+
+    def _refocus(self, camera: viser.CameraHandle) -> None:
+        """What is cut off before the camera follows its distance from the ship."""
+        if self._framed is None:
+            return
+        x, y, z = (float(value) for value in camera.position)
+        near = nearest_seen((x, y, z), self._framed, self._abeam)
+        if not 0.5 < near / camera.near < 2.0:
+            camera.near = near
 
     def place_camera(self) -> None:
         """Put the camera where its preset stands."""
@@ -276,8 +253,7 @@ class SceneView:
         )
         camera = self._client.camera
         with self._client.atomic():
-            camera.near = 0.5
-            camera.far = 60_000.0
+            camera.near, camera.far = nearest_seen(pose.position, framed, self._abeam), 2.5 * _SKY_LENGTHS * framed[0]
             camera.up_direction = pose.up
             camera.position = pose.position
             camera.look_at = pose.look_at
@@ -304,7 +280,7 @@ class SceneView:
             # right-handed: clockwise seen from astern, looking forward along +x, is a positive turn about +x
             angle = (angle + 2.0 * math.pi * rate * _SPIN_SCALE * (now - last)) % (2.0 * math.pi)
             last = now
-            frame = self._handles.get("propeller frame")
+            frame = self._nodes.get("/ship/propeller")
             if frame is not None:
                 frame.wxyz = (math.cos(angle / 2.0), math.sin(angle / 2.0), 0.0, 0.0)
             time.sleep(_FRAME_SECONDS)

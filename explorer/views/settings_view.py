@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import json
 import math
 import threading
 from collections.abc import Callable
@@ -88,6 +89,7 @@ class SettingsView:
                     for section, name, label in fields:
                         self.add_field(section, name, label)
             self._save = gui.add_button("Save this case as TOML")
+            self._show_hints()
         self._workers.on_update(self._on_workers)
         self._preset.on_update(self._on_preset)
         self._around.on_click(self._on_around)
@@ -96,6 +98,12 @@ class SettingsView:
         app.hub.on(("draft", "run"), self.draw)
         app.hub.on(("settings",), self.show_all)
         self.draw()
+
+    def _show_hints(self) -> None:
+        """The hints by label, for the page to tell them over the labels too."""
+        widgets = (*self._sliders.values(), *self._widgets.values(), self._workers)
+        hints = {widget.label: widget.hint for widget in widgets if widget.hint}
+        Slot(self._gui, fill('<div hidden data-hints="{}"></div>', json.dumps(hints)))
 
     def _preset_names(self) -> list[str]:
         names = list(SHIPPED_CASES)

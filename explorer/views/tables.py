@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from explorer.state.shown import Shown
-from hpsop_core.markup import Markup, fill, joined, symbol_html
+from hpsop_core.markup import Markup, fill, joined, symbol_html, symbol_plain
 from hpsop_core.quantities import (
     CONSTRAINT_GROUP,
     CONSTRAINTS,
@@ -182,14 +182,23 @@ def _card_row(quantity: Quantity, shown: Shown) -> Markup:
 
 def _name(quantity: Quantity) -> Markup:
     return fill(
-        "{} <span class='unit'>{}</span>{}", quantity.label, symbol_html(quantity.symbol), _bracketed_unit(quantity)
+        "<span title=\"{}\">{} <span class='unit'>{}</span>{}</span>",
+        _meaning(quantity),
+        quantity.label,
+        symbol_html(quantity.symbol),
+        _bracketed_unit(quantity),
     )
+
+
+def _meaning(quantity: Quantity) -> str:
+    """A quantity's name and formula, for whoever rests on it."""
+    return f"{quantity.label}: {symbol_plain(quantity.formula)}" if quantity.formula else quantity.label
 
 
 def _short_name(quantity: Quantity) -> Markup:
     """Symbol and unit, with the name on hover: several designs leave no room for both."""
     symbol = symbol_html(quantity.symbol)
-    return fill('<span title="{}">{}{}</span>', quantity.label, symbol, _bracketed_unit(quantity))
+    return fill('<span title="{}">{}{}</span>', _meaning(quantity), symbol, _bracketed_unit(quantity))
 
 
 def _bracketed_unit(quantity: Quantity) -> Markup:

@@ -26,8 +26,10 @@ from hpsop_core.quantities import conditions_of, number_text
 _SWITCHES = (
     ("ghost", "Ghost", "the initial design beside the selected one; choose another in Compare"),
     ("beside", "Beside", "the ghost abeam, to port, instead of around the selected hull"),
+    ("hull", "Hull", "the hull; without it the propeller is seen from all sides"),
     ("topsides", "Topsides", "the hull above the waterline"),
-    ("water", "Water", "the water surface"),
+    ("fittings", "Fittings", "deck house, cargo, rudder and draught marks: for looks, no number knows of them"),
+    ("water", "Water", "the calm water surface; its ripples are paint"),
     ("waves", "Waves", "wave pattern at the chosen condition"),
     ("pressure", "Pressure", "pressure coefficient on hull and blades, level 2"),
     ("spin", "Turn", "the propeller turns at a quarter of its real rate"),
@@ -77,7 +79,9 @@ class ToolbarView:
             )
             row = joined([soft("At", "span"), chips(conditions)])
         other = (
-            chip("switch", "Dark", "dark", on=options.dark)
+            chip("help", "?", hint="help: what stands where, and every word with its formula")
+            + chip("switch", "Wide", "wide", on=options.wide, hint="close the panels: the ship has the whole window")
+            + chip("switch", "Dark", "dark", on=options.dark)
             + chip("screenshot", "Screenshot")
             + chip("take_away", "CAD files", hint="the shown design as Rhino, DXF, STL, GLB, CSV and JSON in one ZIP")
         )
@@ -143,9 +147,7 @@ class ToolbarView:
 
     def _switch(self, event: PageEvent) -> None:
         options = self._session.options
-        if event.arg == "dark":
-            self._session.set_options(dark=not options.dark)
-        elif event.arg in {name for name, _, _ in _SWITCHES}:
+        if event.arg in {"dark", "wide"} | {name for name, _, _ in _SWITCHES}:
             self._session.set_options(**{event.arg: not getattr(options, event.arg)})
 
     def _condition(self, event: PageEvent) -> None:

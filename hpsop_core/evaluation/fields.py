@@ -86,6 +86,8 @@ class PressureField:
         froude_number, advance_coefficient: of the condition.
         solver: what made it.
         warnings: of the solver, one line each.
+        vapour_coefficient: blades: (m,) the ``uniform_coefficient`` below which the water evaporates with that blade
+            upwards, as the cavitating share counts it; None on a hull.
     """
 
     points: Array
@@ -98,6 +100,7 @@ class PressureField:
     advance_coefficient: float
     solver: str
     warnings: tuple[str, ...] = ()
+    vapour_coefficient: Array | None = None
 
     @property
     def pressure(self) -> Array:
@@ -299,19 +302,24 @@ def blade_pressure(
     found = result.surface_pressure(advance)
     placement = propeller_placement(design_hull(case, variables), propeller)
     density, rate = case.constants.density, point.rotation_rate_rpm / 60.0
+    reference = section_dynamic_pressure(density, advance * rate * propeller.diameter, rate, propeller.diameter)
+    vapour = None
+    if point.cavitation_number is not None:
+        # the shaft's margin over the vapour pressure less the water's head up to the panel
+        radius = np.hypot(*found.points[found.quads].mean(axis=1)[:, 1:].T)
+        vapour = density * case.constants.gravity * radius / reference - point.cavitation_number
     return PressureField(
         points=found.points @ placement[:3, :3].T + placement[:3, 3],
         quads=found.quads,
         pressure_coefficient=found.pressure_coefficient,
         # the solver's unit of speed is n R
         dynamic_pressure=density * (rate * 0.5 * propeller.diameter) ** 2 * found.dynamic_pressure,
-        reference_pressure=section_dynamic_pressure(
-            density, advance * rate * propeller.diameter, rate, propeller.diameter
-        ),
+        reference_pressure=reference,
         blade=found.blade,
         froude_number=point.froude_number,
         advance_coefficient=advance,
         solver=result.open_water.solver,
+        vapour_coefficient=vapour,
     )
 
 
