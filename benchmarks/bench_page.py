@@ -187,6 +187,7 @@ def loaded() -> str:
 def opened(browser: Any, address: str) -> Iterator[Any]:
     """A page that stands: chart, table and numbers of the initial design."""
     context = browser.new_context(viewport={"width": 1366, "height": 768})
+    context.add_init_script('localStorage.setItem("hpsop-toured", "1")')
     page = context.new_page()
     page.set_default_timeout(120_000)
     page.goto(address)

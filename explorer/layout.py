@@ -30,6 +30,7 @@ from explorer.views.run_control import RunControl
 from explorer.views.run_view import RunView
 from explorer.views.saving import Saving
 from explorer.views.scene_view import SceneView
+from explorer.views.screenshot_view import ScreenshotView
 from explorer.views.settings_view import SettingsView
 from explorer.views.ship_view import ShipView
 from explorer.views.table_view import TableView
@@ -124,7 +125,7 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
             ShipView(session, services.ships, services.runs, gui)
         with pareto:
             you = Slot(gui)
-    SceneView(session, designs, client)
+    ScreenshotView(session, SceneView(session, designs, client), client)
     OverlayView(session, designs, client)
 
     def hello(event: PageEvent) -> None:

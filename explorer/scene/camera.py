@@ -6,9 +6,11 @@ from dataclasses import dataclass
 
 import numpy as np
 from numpy.typing import NDArray
+from viser.transforms import SO3
 
 PRESETS = ("perspective", "below", "profile", "plan", "body", "propeller", "backs")
 CLOSE_UPS = ("propeller", "backs")
+LONG_VIEWS = ("profile", "plan")
 TITLES = {
     "perspective": "Perspective",
     "below": "From below",
@@ -33,6 +35,16 @@ class CameraPose:
     look_at: Point
     up: Point
     field_of_view: float
+
+    def orientation(self) -> tuple[float, float, float, float]:
+        """As a quaternion (w, x, y, z) of a camera that looks along its own z with y downwards."""
+        forward = np.array(self.look_at) - np.array(self.position)
+        forward /= np.linalg.norm(forward)
+        right = np.cross(forward, np.array(self.up))
+        right /= np.linalg.norm(right)
+        turn = np.column_stack([right, np.cross(forward, right), forward])
+        w, x, y, z = (float(value) for value in SO3.from_matrix(turn).wxyz)
+        return w, x, y, z
 
 
 def preset(

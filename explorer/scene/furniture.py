@@ -260,7 +260,8 @@ def rudder(underwater: Array, propeller_x: float, shaft_height: float, diameter:
     if len(above):
         order = np.argsort(above[:, 0])
         top = float(np.interp(middle, above[order, 0], above[order, 2])) - 0.01 * diameter
-    bottom = shaft_height - 0.54 * diameter
+    # clear of the baseline, as a docking ship needs it
+    bottom = max(shaft_height - 0.52 * diameter, 0.05 * shaft_height)
     # a symmetrical section, blunt forward and sharp aft, taken in a little at the foot
     along = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 13))
     half = thick * (1.4845 * np.sqrt(along) - 0.63 * along - 1.758 * along**2 + 1.4215 * along**3 - 0.5180 * along**4)

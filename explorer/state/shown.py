@@ -46,3 +46,8 @@ class Shown:
             "level": self.evaluation.level,
             "variables": self.evaluation.variables.as_dict(),
         }
+
+
+def file_name(shown: Shown | None) -> str:
+    """How files of a design begin."""
+    return f"hpsop-{shown.design_id if shown and shown.design_id is not None else 'design'}"

@@ -13,6 +13,7 @@ class ViewOptions:
     ``ghost_of`` is "initial" or the ``name`` of a pinned design; a pin that is gone means the initial design.
     ``beside`` puts the ghost abeam, to port, where neither hull hides the other. ``fittings`` are
     for looks: deck house, cargo, rudder, draught marks. ``wide``: the panels are closed, the ship has the whole window.
+    ``picture_*``: of a screenshot; a side of 0 is the window's.
     """
 
     ghost: bool = False
@@ -29,6 +30,14 @@ class ViewOptions:
     camera: str = "perspective"
     wide: bool = False
     dark: bool = False
+    picture_open: bool = False
+    picture_width: int = 0
+    picture_height: int = 0
+    picture_transparent: bool = False
+
+    def picture_size(self, window: tuple[int, int]) -> tuple[int, int]:
+        """Of a screenshot in px: what was chosen, else the window's."""
+        return (self.picture_width, self.picture_height) if self.picture_width and self.picture_height else window
 
     def restored(self, saved: object) -> ViewOptions:
         """These with what ``saved`` says, where it says something that an option can be."""

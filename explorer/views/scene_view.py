@@ -6,11 +6,13 @@ import math
 import threading
 import time
 from collections import deque
+from typing import Any
 
 import numpy as np
 import viser
+from numpy.typing import NDArray
 
-from explorer.scene.camera import CLOSE_UPS, PRESETS, nearest_seen, preset
+from explorer.scene.camera import CLOSE_UPS, LONG_VIEWS, PRESETS, CameraPose, nearest_seen, preset
 from explorer.scene.geometry import SceneGeometry
 from explorer.scene.nodes import Nodes
 from explorer.scene.surroundings import calm_water, sky
@@ -41,6 +43,8 @@ _SHADOW_OPACITY = 0.3
 _ABEAM, _ABEAM_OPACITY = 1.5, 0.85
 # the propeller turns at a quarter of its real rate: a screen cannot show 100 rpm of five blades
 _SPIN_SCALE = 0.25
+# software graphics take some time for 4K
+_PICTURE_SECONDS = 90.0
 _FRAME_SECONDS = 1.0 / 25.0
 
 
@@ -64,6 +68,7 @@ class SceneView:
         self._told, self._docked = 0.0, False
         self._abeam = 0.0
         self._hidden_for_backs = False
+        self._made_room, self._keeps_panels = False, False
         self._spinning = threading.Event()
         self._dark: bool | None = None
         client.scene.configure_default_lights(cast_shadow=False)
@@ -197,8 +202,23 @@ class SceneView:
                 hull, self._hidden_for_backs = False, hull
             elif self._hidden_for_backs:
                 hull, self._hidden_for_backs = True, False
-            self._session.set_options(camera=event.arg, hull=hull)
+            self._session.set_options(camera=event.arg, hull=hull, wide=self._wide(event.arg))
             self.place_camera()
+
+    def _wide(self, camera: str) -> bool:
+        """Whether the panels make room for a view: a ship's profile is seven times as long as it is high.
+
+        They come back with the next other view; who has opened them in such a view meanwhile keeps them.
+        """
+        wide = self._session.options.wide
+        if self._made_room and not wide:
+            self._made_room, self._keeps_panels = False, True
+        if camera in LONG_VIEWS:
+            if not wide and not self._keeps_panels:
+                self._made_room = wide = True
+        elif self._made_room:
+            self._made_room = wide = False
+        return wide
 
     def _unmoved(self) -> bool:
         now = np.asarray(self._client.camera.position)
@@ -243,14 +263,7 @@ class SceneView:
         if geometry is None or framed is None:
             return
         self._framed_for = self._aspect()
-        pose = preset(
-            self._session.options.camera,
-            *framed,
-            (float(geometry.propeller_position[0]), float(geometry.propeller_position[2])),
-            geometry.diameter,
-            self._framed_for,
-            self._abeam,
-        )
+        pose = self._pose(geometry, framed, self._framed_for)
         camera = self._client.camera
         with self._client.atomic():
             camera.near, camera.far = nearest_seen(pose.position, framed, self._abeam), 2.5 * _SKY_LENGTHS * framed[0]
@@ -259,6 +272,41 @@ class SceneView:
             camera.look_at = pose.look_at
             camera.fov = pose.field_of_view
         self._placed.append(np.asarray(pose.position, dtype=float))
+
+    def _pose(self, geometry: SceneGeometry, framed: tuple[float, float, float], aspect: float) -> CameraPose:
+        return preset(
+            self._session.options.camera,
+            *framed,
+            (float(geometry.propeller_position[0]), float(geometry.propeller_position[2])),
+            geometry.diameter,
+            aspect,
+            self._abeam,
+        )
+
+    def picture(self, width: int, height: int, transparent: bool) -> NDArray[np.uint8]:
+        """The view as an image of any size, (height, width, 4), with nothing behind the ship where asked for.
+
+        From a preset the ship fills the picture whatever its shape; a camera that was moved keeps what it shows from
+        the upper to the lower edge.
+
+        Raises:
+            TimeoutError: the browser gives no picture in time.
+            RuntimeError: it has left.
+        """
+        stand: dict[str, Any] = {}
+        if self._geometry is not None and self._framed is not None and self._unmoved():
+            pose = self._pose(self._geometry, self._framed, width / height)
+            stand = {"wxyz": pose.orientation(), "position": pose.position, "fov": pose.field_of_view}
+        sky = self._sky if transparent else None
+        if sky is not None:
+            sky.visible = False
+            self._client.flush()
+        try:
+            image = self._client.get_render(height, width, transport_format="png", timeout=_PICTURE_SECONDS, **stand)
+        finally:
+            if sky is not None:
+                sky.visible = True
+        return np.asarray(image, dtype=np.uint8)
 
     # ---- spin ------------------------------------------------------------------------------------------------------
     def _spin(self) -> None:

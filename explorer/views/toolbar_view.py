@@ -2,18 +2,14 @@
 
 from __future__ import annotations
 
-import io
-from typing import Any
-
 import viser
-from PIL import Image
 
 from explorer.scene.camera import PRESETS, TITLES
 from explorer.server.bridge import PageEvent, overlay
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Session
-from explorer.state.shown import Shown
+from explorer.state.shown import Shown, file_name
 from explorer.views.chips import NOTHING, chip, chips, soft
 from explorer.views.headline import headline_card
 from explorer.views.on_display import ghost_of
@@ -49,7 +45,6 @@ class ToolbarView:
         session.hub.on(("selection", "options", "pins", "legend"), self.draw_card)
         session.gestures.on("act", "switch", self._switch)
         session.gestures.on("act", "condition", self._condition)
-        session.gestures.on("act", "screenshot", self._screenshot)
         session.gestures.on("act", "take_away", self._take_away)
         self.draw()
         self.draw_card()
@@ -82,7 +77,14 @@ class ToolbarView:
             chip("help", "?", hint="help: what stands where, and every word with its formula")
             + chip("switch", "Wide", "wide", on=options.wide, hint="close the panels: the ship has the whole window")
             + chip("switch", "Dark", "dark", on=options.dark)
-            + chip("screenshot", "Screenshot")
+            + chip("screenshot", "Screenshot", hint="the 3D view as a PNG, without panels")
+            + chip(
+                "switch",
+                "size …",
+                "picture_open",
+                on=options.picture_open,
+                hint="of the screenshot, and its background",
+            )
             + chip("take_away", "CAD files", hint="the shown design as Rhino, DXF, STL, GLB, CSV and JSON in one ZIP")
         )
         self._bar.show(
@@ -90,14 +92,50 @@ class ToolbarView:
                 "toolbar",
                 fill(
                     '<div class="card"><div class="tools"><span class="soft">View</span>{}'
-                    '<span class="soft">Show</span>{}{}<span class="soft">Page</span>{}</div></div>',
+                    '<span class="soft">Show</span>{}{}<span class="soft">Page</span>{}{}</div></div>',
                     chips(cameras),
                     chips(switches),
                     row,
                     chips(other),
+                    self._picture_row() if options.picture_open else NOTHING,
                 ),
             )
         )
+
+    def _picture_row(self) -> Markup:
+        """Size and background of a screenshot."""
+        options = self._session.options
+        sides = options.picture_size(self._session.size)
+        now = f"{options.picture_width}x{options.picture_height}"
+        sizes = joined(
+            chip("picture_size", word, value, on=now == value, hint=hint)
+            for word, value, hint in (
+                ("window", "window", "as large as this window"),
+                ("1920 × 1080", "1920x1080", "full HD"),
+                ("3840 × 2160", "3840x2160", "4K"),
+            )
+        )
+        boxes = joined(
+            (
+                fill(
+                    '<input type="number" class="bound" data-set="picture_side" data-arg="{}" value="{}" min="100" '
+                    'max="7680" aria-label="{} of the screenshot in pixels">',
+                    name,
+                    value,
+                    name,
+                )
+                for name, value in zip(("width", "height"), sides, strict=True)
+            ),
+            " × ",
+        )
+        clear = chip(
+            "switch",
+            "transparent",
+            "picture_transparent",
+            on=options.picture_transparent,
+            hint="nothing behind the ship: no sky",
+        )
+        return joined([soft("Size", "span"), chips(sizes, boxes, clear)])
 
     def draw_card(self) -> None:
         """The design's name and headline numbers, and legends."""
@@ -147,16 +185,13 @@ class ToolbarView:
 
     def _switch(self, event: PageEvent) -> None:
         options = self._session.options
-        if event.arg in {"dark", "wide"} | {name for name, _, _ in _SWITCHES}:
+        if event.arg in {"dark", "wide", "picture_open", "picture_transparent"} | {name for name, _, _ in _SWITCHES}:
             self._session.set_options(**{event.arg: not getattr(options, event.arg)})
 
     def _condition(self, event: PageEvent) -> None:
         shown = self._session.selected
         if shown is not None and event.arg.isdecimal() and int(event.arg) < len(shown.evaluation.conditions):
             self._session.set_options(condition=int(event.arg))
-
-    def _screenshot(self, _event: PageEvent) -> None:
-        self._session.heavy.latest("screenshot", self._take)
 
     def _take_away(self, _event: PageEvent) -> None:
         shown = self._session.selected
@@ -174,29 +209,8 @@ class ToolbarView:
         except HpsopError as error:
             self._session.notify("No files", str(error), "red")
             return
-        self._client.send_file_download(f"{_file_name(shown)}.zip", archive, save_immediately=True)
-
-    def _take(self) -> None:
-        width, height = self._session.size
-        try:
-            image: Any = self._client.get_render(
-                height=min(max(height, 240), 2160),
-                width=min(max(width, 320), 3840),
-                transport_format="png",
-                timeout=30.0,
-            )
-        except (TimeoutError, RuntimeError) as error:
-            self._session.notify("No screenshot", str(error), "yellow")
-            return
-        picture = io.BytesIO()
-        Image.fromarray(image).save(picture, format="PNG")
-        name = f"{_file_name(self._session.selected)}.png"
-        self._client.send_file_download(name, picture.getvalue(), save_immediately=True)
+        self._client.send_file_download(f"{file_name(shown)}.zip", archive, save_immediately=True)
 
 
 def _within_a_line(shown: Shown) -> str:
     return shown.label[0].lower() + shown.label[1:]
-
-
-def _file_name(shown: Shown | None) -> str:
-    return f"hpsop-{shown.design_id if shown and shown.design_id is not None else 'design'}"

@@ -61,10 +61,17 @@ def open_page(chromium: Browser) -> Iterator[Callable[..., Page]]:
     """Opens a page of its own browser context (as another person's browser) and waits until it stands."""
     contexts = []
 
-    def open_one(explorer: Explorer, width: int = 1200, height: int = 700, fresh: bool = True) -> Page:
-        """``fresh``: nobody has chosen a design here before; the tests begin at the initial one, without a ghost."""
+    def open_one(
+        explorer: Explorer, width: int = 1200, height: int = 700, fresh: bool = True, toured: bool = True
+    ) -> Page:
+        """``fresh``: nobody has chosen a design here before; the tests begin at the initial one, without a ghost.
+
+        ``toured``: this browser has seen the tour, which is not offered again.
+        """
         context = chromium.new_context(viewport={"width": width, "height": height})
         contexts.append(context)
+        if toured:
+            context.add_init_script('localStorage.setItem("hpsop-toured", "1")')
         page = context.new_page()
         page.set_default_timeout(PATIENCE)
         page.goto(explorer.address)

@@ -303,6 +303,7 @@ def main(argv: Sequence[str] | None = None) -> int:
             browser = playwright.chromium.launch(executable_path=chromium_program(), args=list(ARGUMENTS))
             page = browser.new_page(viewport={"width": width, "height": height})
             page.set_default_timeout(120_000)
+            page.add_init_script('localStorage.setItem("hpsop-toured", "1")')
             page.goto(explorer.address)
             page.add_style_tag(content=_HIDE)
             page.wait_for_selector("[data-selected]", state="attached")
