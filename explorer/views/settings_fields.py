@@ -169,8 +169,12 @@ _LABELS |= {(section, name): label for section, name, label in SEARCH_FIELDS}
 _LABELS |= {("bounds", name): variable.symbol for name, variable in VARIABLE_TABLE.items()}
 
 
+_SPOKEN = {name: label for (_, name), label in _LABELS.items() if "_" in name}
+
+
 def in_words(message: str) -> str:
-    """A message of the case with its field called as on the page: "Population: 2 is outside its limits"."""
+    """A message of the case with its fields called as on the page: "Population: 2 is outside its limits"."""
     found = re.match(r"(\w+): (\w+)", message)
     label = _LABELS.get((found[1], found[2])) if found else None
-    return f"{label}{message[found.end() :]}" if found and label else message
+    begin, rest = (label, message[found.end() :]) if found and label else ("", message)
+    return begin + re.sub(r"\b[a-z0-9]+(?:_[a-z0-9]+)+\b", lambda name: _SPOKEN.get(name[0], name[0]), rest)

@@ -21,7 +21,7 @@ from explorer.server.bridge import PageEvent, scrolling
 from explorer.server.html_slot import Slot
 from explorer.server.widgets import set_value
 from explorer.services.designs import Designs
-from explorer.state.run_picture import RunPicture
+from explorer.state.run_picture import ACTIVE, RunPicture
 from explorer.state.session import Session
 from explorer.state.table_options import WHICH
 from explorer.views.chips import GAP, NOTHING, box, chip, chips, soft
@@ -84,7 +84,9 @@ class TableView:
         session = self._session
         picture, options = session.picture, session.table
         if not len(picture.ids):
-            self._html.show(box(soft("No designs yet. Press Start: every design that is evaluated gets a row here.")))
+            begun = picture.status in ACTIVE
+            words = "The first designs are being evaluated." if begun else "No designs yet. Press Start."
+            self._html.show(box(soft(f"{words} Every design that is evaluated gets a row here.")))
             return
         rows = self._rows(picture)
         page, pages = page_of(rows, options), max(-(-len(rows) // ROWS), 1)

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import numpy as np
 import pytest
-from conftest import session_of, small_case, wait_until
+from conftest import press, session_of, small_case, wait_until
+from PIL import Image
 
 from explorer.app import Explorer
 from explorer.server.security import free_port
@@ -51,3 +52,55 @@ def test_the_whole_ship_is_in_the_picture_when_the_page_opens(explorer, page):
     # the view between the docks, as the browser says; it may take some frames until the last dock stands
     wait_until(lambda: _seen(camera, ship) < 1.0, 30, "a camera that holds the ship")
     assert _seen(camera, ship) > 0.8  # and fills the view
+
+
+def test_views_make_room_hide_the_hull_and_are_saved_at_any_size(explorer, page):
+    session = session_of(explorer)
+    client = explorer.server.get_clients()[session.client_id]
+    press(page, "camera", "profile")
+    # the panels are closed, and the toolbar still answers
+    wait_until(lambda: session.options.wide and client.camera.aspect > 2.0, 60, "a wide view")
+    press(page, "camera", "backs")
+    wait_until(lambda: not session.options.wide and client.camera.aspect < 1.5, 60, "the panels")
+    hull = client.scene.get_handle_by_name("/ship/underwater")
+    wait_until(lambda: not hull.visible and client.camera.position[0] > 5.0, 30, "a view of the backs")
+    press(page, "camera", "perspective")
+    wait_until(lambda: hull.visible, 30, "the hull")
+    press(page, "switch", "picture_open")
+    for side, pixels in (("width", 640), ("height", 360)):
+        box = page.locator(f'[data-set="picture_side"][data-arg="{side}"]')
+        box.fill(str(pixels))
+        box.press("Tab")
+        wait_until(lambda side=side, pixels=pixels: getattr(session.options, f"picture_{side}") == pixels, 20, side)
+    press(page, "switch", "picture_transparent")
+    wait_until(lambda: session.options.picture_transparent, 20, "a clear background")
+    with page.expect_download() as waiting:
+        press(page, "screenshot")
+    picture = Image.open(waiting.value.path())
+    assert picture.size == (640, 360) and picture.mode == "RGBA"
+    alpha = np.asarray(picture)[..., 3]
+    # no sky in the upper corners, a ship in the middle
+    assert alpha[0, 0] == alpha[0, -1] == 0 and alpha[180, 320] == 255
+
+
+def test_the_tour_is_offered_once_and_the_help_tells_what_labels_mean(explorer, open_page):
+    page = open_page(explorer, 1366, 600, toured=False)
+    tour = page.locator(".hpsop-overlay-tour [data-point]")
+    tour.wait_for()
+    press(page, "tour", "1")
+    page.locator('.hpsop-overlay-tour [data-point="svg[data-chart=pareto]"]').wait_for()
+    press(page, "tour", "end")
+    tour.wait_for(state="detached")
+    press(page, "help")
+    page.locator('.hpsop-overlay-help [data-word="open_water_efficiency"]').wait_for()
+    press(page, "help", "")
+    page.locator(".hpsop-overlay-help [data-word]").first.wait_for(state="detached")
+    label = page.locator("label[for]", has_text="L/B").first
+    label.hover()
+    assert label.get_attribute("title") == "length over breadth, L/B"
+    page.reload()
+    page.wait_for_selector("[data-selected]", state="attached")
+    page.wait_for_selector(".hpsop-overlay-card [data-card]", state="attached")
+    press(page, "help")
+    page.locator(".hpsop-overlay-help [data-word]").first.wait_for(state="attached")
+    assert tour.count() == 0
