@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import threading
 from typing import Any
 
 import viser
@@ -165,18 +166,19 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
     session.gestures.on("size", "", size)
     session.hub.on(("options",), theme)
 
+    closed = threading.Event()
+
     def docks() -> None:
         """Open or close all panels, where that was asked for."""
-        nonlocal wide
-        if session.options.wide == wide:
-            return
         wide = session.options.wide
+        if wide == closed.is_set():
+            return
+        (closed.set if wide else closed.clear)()
         for panel in (top, gui.main_panel):
             if wide or (session.narrow and panel is not top):
                 panel.minimize()
             else:
                 panel.expand()
 
-    wide = False
     session.hub.on(("options",), docks)
     session.worker.latest("first selection", lambda: select_first(session, designs))

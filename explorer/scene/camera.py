@@ -73,8 +73,9 @@ def preset(
         # from astern the blades show their faces, from ahead their backs
         along = 0.86 if name == "backs" else -0.86
         return CameraPose((look[0] + along * reach, -0.52 * reach, look[2] + 0.10 * reach), look, _UP, 0.75)
-    # what has to be seen: from the counter to the bulb, from the keel to the deck of the parent
-    x0, x1, deck = -0.03 * length, 1.025 * length, 2.4 * draft
+    # what has to be seen: from the counter to the bulb, from the keel to the deck of the parent; from ahead, where
+    # nothing lies before it, to the bridge
+    x0, x1, deck = -0.03 * length, 1.025 * length, (4.2 if name == "body" else 2.4) * draft
     corners = np.array([(x, y, z) for x in (x0, x1) for y in (-breadth / 2, breadth / 2 + abeam) for z in (0.0, deck)])
     # a narrow view looks along the ship more than across it
     side = float(np.interp(aspect, (0.6, 1.8), (0.66, 1.75)))

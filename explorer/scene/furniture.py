@@ -229,7 +229,8 @@ def _hatches(pile: _Pile, deck: _Deck, length: float, clear: Sequence[tuple[floa
 
 def unit_box() -> Mesh:
     """A box of side 1 about the origin, each face with corners of its own so that its edges are sharp."""
-    corners, faces = [], []
+    corners: list[Array] = []
+    faces: list[NDArray[np.int64]] = []
     for axis in range(3):
         for side in (-0.5, 0.5):
             first = 4 * len(corners)

@@ -82,7 +82,7 @@ def sky(dark: bool) -> bytes:
         visual=trimesh.visual.TextureVisuals(uv=uv, material=material),
         process=False,
     )
-    return trimesh.exchange.gltf.export_glb(trimesh.Scene(shell), tree_postprocessor=_unlit)
+    return bytes(trimesh.exchange.gltf.export_glb(trimesh.Scene(shell), tree_postprocessor=_unlit))
 
 
 def _unlit(tree: dict[str, Any]) -> None:

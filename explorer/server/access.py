@@ -113,9 +113,9 @@ class Access:
         if urlsplit(request.path).path == f"/{_SCRIPT}":
             return self._script(host)
         if urlsplit(request.path).path == f"/{_STYLE}":
-            response = _text(HTTPStatus.OK, page_style())
-            response.headers["Content-Type"] = "text/css; charset=utf-8"
-            return response
+            style = _text(HTTPStatus.OK, page_style())
+            style.headers["Content-Type"] = "text/css; charset=utf-8"
+            return style
         response = answer(connection, request)
         if response is not None and response.headers.get("Content-Type", "").startswith("text/html"):
             self._add_script(response)

@@ -302,19 +302,19 @@ def blade_pressure(
     found = result.surface_pressure(advance)
     placement = propeller_placement(design_hull(case, variables), propeller)
     density, rate = case.constants.density, point.rotation_rate_rpm / 60.0
-    reference = section_dynamic_pressure(density, advance * rate * propeller.diameter, rate, propeller.diameter)
+    unit = section_dynamic_pressure(density, advance * rate * propeller.diameter, rate, propeller.diameter)
     vapour = None
     if point.cavitation_number is not None:
         # the shaft's margin over the vapour pressure less the water's head up to the panel
         radius = np.hypot(*found.points[found.quads].mean(axis=1)[:, 1:].T)
-        vapour = density * case.constants.gravity * radius / reference - point.cavitation_number
+        vapour = density * case.constants.gravity * radius / unit - point.cavitation_number
     return PressureField(
         points=found.points @ placement[:3, :3].T + placement[:3, 3],
         quads=found.quads,
         pressure_coefficient=found.pressure_coefficient,
         # the solver's unit of speed is n R
         dynamic_pressure=density * (rate * 0.5 * propeller.diameter) ** 2 * found.dynamic_pressure,
-        reference_pressure=reference,
+        reference_pressure=unit,
         blade=found.blade,
         froude_number=point.froude_number,
         advance_coefficient=advance,

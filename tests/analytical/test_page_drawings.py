@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
-from explorer.scene.camera import PRESETS, preset
+from explorer.scene.camera import CLOSE_UPS, PRESETS, preset
 from explorer.scene.colours import PRESSURE, SEA, around_zero, painted, ramp
 from explorer.scene.transfer import transferred
 from explorer.services.answers import Answers
@@ -108,12 +108,14 @@ def test_the_card_of_many_conditions_has_a_column_each(initial: Evaluation):
 
 
 # ---- the 3D view -----------------------------------------------------------------------------------------------------
-@pytest.mark.parametrize("name", [name for name in PRESETS if name != "propeller"])
+@pytest.mark.parametrize("name", [name for name in PRESETS if name not in CLOSE_UPS])
 @pytest.mark.parametrize("aspect", [0.5, 0.7, 1.0, 1.6, 2.4])
 def test_no_preset_cuts_the_ship(name: str, aspect: float):
     length, breadth, draft = 355.0, 51.0, 14.5
     pose = preset(name, length, breadth, draft, (7.5, 5.0), 9.0, aspect)
-    corners = np.array([(x, y, z) for x in (-5.0, 362.0) for y in (-25.5, 25.5) for z in (0.0, 34.0)])
+    # from ahead, where nothing stands before it, the house over the deck belongs to the ship
+    top = 60.0 if name == "body" else 34.0
+    corners = np.array([(x, y, z) for x in (-5.0, 362.0) for y in (-25.5, 25.5) for z in (0.0, top)])
     across, up = _seen(pose, corners, aspect)
     assert np.abs(across).max() < 1.0 and np.abs(up).max() < 1.0
     # and it is as large as the view allows: it fills one of the directions
@@ -128,9 +130,10 @@ def test_a_ship_abeam_is_in_the_picture_too(name: str):
     assert np.abs(across).max() < 1.0 and np.abs(up).max() < 1.0
 
 
+@pytest.mark.parametrize("name", CLOSE_UPS)
 @pytest.mark.parametrize("aspect", [0.5, 0.7, 1.6])
-def test_the_close_up_shows_the_whole_propeller(aspect: float):
-    pose = preset("propeller", 355.0, 51.0, 14.5, (7.5, 5.0), 9.0, aspect)
+def test_the_close_up_shows_the_whole_propeller(name: str, aspect: float):
+    pose = preset(name, 355.0, 51.0, 14.5, (7.5, 5.0), 9.0, aspect)
     turn = np.linspace(0.0, 2.0 * np.pi, 40)
     tips = np.column_stack([np.full(40, 7.5), 4.5 * np.cos(turn), 5.0 + 4.5 * np.sin(turn)])
     across, up = _seen(pose, tips, aspect)
