@@ -98,20 +98,26 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
         titles.insert(0 if session.app.ship.hull is not None else len(titles), "Your ship")
         tabs = {title: bottom.add_tab(title) for title in titles}
         bottom.dock_below(top)
+        # what is never seen itself but must stand whatever panels are closed: a closed panel's elements are not there
+        unseen = gui.add_panel()
+        unseen.float(x=0, y=0, width=40, height=40)
+        unseen_tab = unseen.add_tab("hpsop")
         for title, tab in tabs.items():
             with tab:
                 Slot(gui, purpose(title))
         RunControl(session, services.runs)
         ParallelBrushes(session)
-        with pareto:
+        with unseen_tab:
             Bridge(gui, session.gestures.receive)
-            Slot(gui, purpose("Pareto front"))
             saving = Saving(session, gui, download)
+            ToolbarView(session, designs, gui, client)
+            helping = HelpView(session, gui)
+            you = Slot(gui)
+        with pareto:
+            Slot(gui, purpose("Pareto front"))
             chart = ParetoChart(session, designs, gui, saving)
             Scrubber(session, gui)
             ParetoPicking(session, designs, chart, gui)
-            ToolbarView(session, designs, gui, client)
-            helping = HelpView(session, gui)
         with tabs["Design"]:
             DesignView(session, designs, gui)
         with tabs["Charts"]:
@@ -124,8 +130,6 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
             WhatIfView(session, services, gui)
         with tabs["Your ship"]:
             ShipView(session, services.ships, services.runs, gui)
-        with pareto:
-            you = Slot(gui)
     ScreenshotView(session, SceneView(session, designs, client), client)
     OverlayView(session, designs, client)
 

@@ -297,7 +297,7 @@ def test_the_propeller_turns_ahead(initial: Ok, monkeypatch: pytest.MonkeyPatch)
     view._session = SimpleNamespace(
         selected=Shown("Design 7", initial), options=SimpleNamespace(condition=1, spin=True)
     )
-    view._handles = {"propeller frame": Frame()}
+    view._nodes = {"/ship/propeller": Frame()}
     running = iter([True] * 4 + [False])
     view._spinning = SimpleNamespace(is_set=lambda: next(running))
     clock = iter(0.05 * step for step in range(20))
