@@ -74,6 +74,7 @@ def build_shared(app: AppState, services: Services, server: viser.ViserServer) -
     settings = SettingsView(app, services.runs, gui, space, case_tab, save)
     with runs:
         LibraryView(app, services.runs, gui)
+    Slot(gui, settings.hints())
     guard(gui, app.refuse)
     return settings
 

@@ -273,6 +273,8 @@
     const target = event.target;
     if (target.closest && target.closest("input, textarea, [contenteditable], [role=slider], [role=combobox]")) return;
     if (event.ctrlKey || event.metaKey || event.altKey) return;
+    if (event.key === "Escape" && frames.help && frames.help.style.display === "block")
+      return H.send({ t: "act", name: "help", arg: "close" });
     const arrows = ["ArrowLeft", "ArrowRight", "Home", "End", "Escape"].includes(event.key) && (H.active || hovered);
     if (!arrows && !["[", "]"].includes(event.key)) return;
     event.preventDefault();

@@ -13,12 +13,12 @@ CLOSE_UPS = ("propeller", "backs")
 LONG_VIEWS = ("profile", "plan")
 TITLES = {
     "perspective": "Perspective",
-    "below": "From below",
+    "below": "Below",
     "profile": "Profile",
     "plan": "Plan",
     "body": "Body",
     "propeller": "Propeller",
-    "backs": "Blade backs",
+    "backs": "Backs",
 }
 Array = NDArray[np.float64]
 Point = tuple[float, float, float]

@@ -21,7 +21,7 @@ class HelpView:
         self._help = Slot(gui)
         self._tour = Slot(gui)
         self._open = False
-        session.gestures.on("act", "help", lambda _event: self._show_help(not self._open))
+        session.gestures.on("act", "help", lambda event: self._show_help(not self._open and event.arg != "close"))
         session.gestures.on("act", "tour", self._step)
 
     def welcome(self, seen: bool) -> None:

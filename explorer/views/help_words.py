@@ -148,7 +148,7 @@ def help_card(case: Case) -> Markup:
         '<h4>What stands where</h4><table class="glossary">{}</table>'
         '<h4>Gestures</h4><table class="glossary">{}</table>{}<h4>Words and formulas</h4>{}</div>',
         _button("tour", "0", "Take the tour"),
-        _button("help", "", "Close"),
+        _button("help", "close", "Close"),
         panels,
         gestures,
         looks,

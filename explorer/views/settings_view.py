@@ -89,7 +89,6 @@ class SettingsView:
                     for section, name, label in fields:
                         self.add_field(section, name, label)
             self._save = gui.add_button("Save this case as TOML")
-            self._show_hints()
         self._workers.on_update(self._on_workers)
         self._preset.on_update(self._on_preset)
         self._around.on_click(self._on_around)
@@ -99,11 +98,12 @@ class SettingsView:
         app.hub.on(("settings",), self.show_all)
         self.draw()
 
-    def _show_hints(self) -> None:
-        """The hints by label, for the page to tell them over the labels too."""
+    def hints(self) -> Markup:
+        """The hints by label, for the page to tell them over the labels too; to stand outside the tabs."""
         widgets = (*self._sliders.values(), *self._widgets.values(), self._workers)
-        hints = {widget.label: widget.hint for widget in widgets if widget.hint}
-        Slot(self._gui, fill('<div hidden data-hints="{}"></div>', json.dumps(hints)))
+        return fill(
+            '<div hidden data-hints="{}"></div>', json.dumps({item.label: item.hint for item in widgets if item.hint})
+        )
 
     def _preset_names(self) -> list[str]:
         names = list(SHIPPED_CASES)

@@ -93,7 +93,7 @@ def test_the_tour_is_offered_once_and_the_help_tells_what_labels_mean(explorer, 
     tour.wait_for(state="detached")
     press(page, "help")
     page.locator('.hpsop-overlay-help [data-word="open_water_efficiency"]').wait_for()
-    press(page, "help", "")
+    page.keyboard.press("Escape")
     page.locator(".hpsop-overlay-help [data-word]").first.wait_for(state="detached")
     label = page.locator("label[for]", has_text="L/B").first
     label.hover()
