@@ -127,14 +127,15 @@ class SceneView:
             before, self._framed = self._framed, _bounds(geometry, behind[0] if behind else None)
             was_abeam, self._abeam = self._abeam, _ABEAM * self._framed[1] if behind and options.beside else 0.0
             self._geometry = geometry
+            # A ship of another size is framed anew, unless the user has moved the camera; before the ship stands there,
+            # so that nobody sees it cut.
+            other = before is None or abs(before[0] - self._framed[0]) > 0.02 * before[0] or was_abeam != self._abeam
+            if before is None or (other and self._unmoved()):
+                self.place_camera()
             with self._client.atomic():
                 self._draw_ship(geometry, behind, ghost_colour)
             self._client.flush()
             self._drawn = state
-            # A ship of another size is framed anew, unless the user has moved the camera.
-            other = before is None or abs(before[0] - self._framed[0]) > 0.02 * before[0] or was_abeam != self._abeam
-            if before is None or (other and self._unmoved()):
-                self.place_camera()
         self._spin()
 
     def _draw_ship(
