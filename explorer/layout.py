@@ -120,7 +120,7 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
             Scrubber(session, gui)
             ParetoPicking(session, designs, chart, gui)
         with tabs["Design"]:
-            DesignView(session, designs, gui)
+            DesignView(session, designs, services.refining, gui)
         with tabs["Charts"]:
             ChartsView(session, designs, gui, chart_tabs(), saving)
         with tabs["Table"]:

@@ -34,6 +34,7 @@ class Quantity:
         group: heading in tables.
         better: -1 when smaller is better, +1 when larger is, 0 when neither.
         formula: from other quantities, as the discipline writes it, or words; "" where the label suffices.
+        scale: of the shown value over the evaluation's own, whose error stands under ``key``.
     """
 
     key: str
@@ -45,6 +46,22 @@ class Quantity:
     group: str
     better: int = 0
     formula: str = ""
+    scale: float = 1.0
+
+    def half_width(self, evaluation: Evaluation) -> float | None:
+        """Of the 90 % interval, in ``unit``; None where no error is stated."""
+        width = evaluation.errors.get(self.key)
+        return None if width is None else self.scale * width
+
+    def error_text(self, evaluation: Evaluation) -> str:
+        """The half width with its sign, at least one digit of it; "" where no error is stated."""
+        width = self.half_width(evaluation)
+        if width is None or self.value(evaluation) is None:
+            return ""
+        decimals = self.decimals
+        if 0.0 < width < 0.5 * 10.0**-decimals:
+            decimals = -math.floor(math.log10(width))
+        return f"± {number_text(width, decimals)}"
 
     def text(self, evaluation: Evaluation) -> str:
         """The number without unit, or a dash."""
@@ -291,6 +308,7 @@ SHIP: tuple[Quantity, ...] = (
         "Ship",
         -1,
         formula="Σ w ṁ_i over the conditions",
+        scale=1e-3,
     ),
     Quantity(
         "carbon_dioxide_per_hour",
@@ -302,6 +320,7 @@ SHIP: tuple[Quantity, ...] = (
         "Ship",
         -1,
         formula="C_F ṁ",
+        scale=1e-3,
     ),
     Quantity(
         "attained_eedi",
@@ -492,6 +511,7 @@ def condition_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
                     f"Condition {index + 1}: {words}",
                     better,
                     formula,
+                    scale,
                 )
             )
     return tuple(made)

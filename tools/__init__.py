@@ -3,7 +3,7 @@
 * calibrations: what level 1 takes from level 2 in the shipped cases, as files
 * case_reference: docs/case.md from the declarations of the fields
 * faults: a folder: faults planted one at a time, to see whether the tests notice
-* level_ranking: how well level 1 ranks what level 2 judges
+* level_ranking: how well level 1 ranks what level 2 judges; error_study: what errors designs have
 * fit_dtc: the shipped hull from the offsets of the reference ship; dtc_sections: those offsets, read
 * hull_campaign: public ships as tables of every kind, read and measured
 * licences: docs/licences.md from what is installed; lock: the pins with hashes that `make` installs

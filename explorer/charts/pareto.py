@@ -158,8 +158,8 @@ def newest_families(
     rows = rows[np.argsort(f[rows, 0], kind="stable")]
     if not len(rows):
         return rows, (), ""
-    own = [picture.errors.get(int(design), {}) for design in picture.ids[rows]]
-    widths = half_widths([item.level] * len(rows), f[rows], own)
+    known = [picture.comparison.get(int(number), {}) for number in picture.ids[rows]]
+    widths = half_widths([item.level] * len(rows), f[rows], known)
     return rows, tuple(int(name) for name in families(f[rows], widths)), narrow(f[rows], widths)
 
 

@@ -10,7 +10,9 @@ from explorer.services.remembered import Remembered
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.evaluation.curves import DesignCurves, HullLines, hull_lines, resistance_points, thrust_curves
+from hpsop_core.evaluation.errors import evaluate_with_errors
 from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.levels import TRUTH
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.shapes import design_hull
@@ -28,6 +30,7 @@ class Answers:
     def __init__(self) -> None:
         self._references: Remembered[Reference] = Remembered(8)
         self._evaluations: Remembered[Evaluation] = Remembered(400)
+        self._refined: Remembered[Evaluation] = Remembered(400)
         self._curves: Remembered[DesignCurves] = Remembered(60)
         self._lines: Remembered[HullLines] = Remembered(60)
         self._plans: Remembered[tuple[HullLine, ...]] = Remembered(24)
@@ -40,6 +43,18 @@ class Answers:
         """A design's evaluation."""
         key = (case, level, variables.key())
         return self._evaluations.get(key, lambda: evaluate(case, variables, level, self.reference(case, level)))
+
+    def refined(self, case: Case, variables: DesignVariables) -> Evaluation:
+        """A design of level 2 with its own errors, from finer solutions."""
+
+        def compute() -> Evaluation:
+            return evaluate_with_errors(case, variables, TRUTH.number, self.reference(case, TRUTH.number))
+
+        return self._refined.get((case, variables.key()), compute)
+
+    def known_refined(self, case: Case, variables: DesignVariables) -> Evaluation | None:
+        """The same where it has been computed."""
+        return self._refined.peek((case, variables.key()))
 
     def initial(self, case: Case, level: int) -> Evaluation:
         """The initial design's evaluation."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import dataclasses
 from typing import Protocol
 
 import numpy as np
@@ -18,9 +19,12 @@ from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import HpsopError
 from hpsop_core.evaluation.curves import DesignCurves, HullLines
 from hpsop_core.evaluation.fields import WaveField, blade_pressure, hull_pressure, waves
+from hpsop_core.evaluation.levels import TRUTH
 from hpsop_core.evaluation.reference import Reference
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.evaluation.stated_errors import with_stated_errors
 from hpsop_core.geometry.hull.lines import HullLine
+from hpsop_core.runs.records import ERROR_FIELDS
 
 
 class DesignSource(Protocol):
@@ -75,7 +79,7 @@ class Designs:
         generation = int(picture.generation[row]) if row is not None else None
         hand = row is not None and bool(picture.by_hand[row])
         label = f"Design {design_id}" + (" (by hand)" if hand else "")
-        return Shown(label, evaluation, design_id, generation, opening=opening)
+        return self.with_errors(Shown(label, evaluation, design_id, generation, opening=opening))
 
     def initial(self, level: int) -> Shown:
         """The initial design at a level: from the run where it has it, else computed."""
@@ -84,7 +88,7 @@ class Designs:
         evaluation = source.initial(level) if source is not None and source.opening == picture.opening else None
         if evaluation is None or evaluation.variables != case.initial.variables:
             evaluation = self._answers.initial(case, level)
-        return Shown("Initial design", evaluation, kind="initial", opening=picture.opening)
+        return self.with_errors(Shown("Initial design", evaluation, kind="initial", opening=picture.opening))
 
     def first(self) -> Shown:
         """The initial design at the level that the run has reached."""
@@ -100,7 +104,22 @@ class Designs:
         """A design of the user's own making, evaluated now."""
         picture = self._display.picture
         evaluation = self._answers.evaluate(picture.case, variables, level)
-        return Shown("What-if", evaluation, kind="whatif", opening=picture.opening)
+        return self.with_errors(Shown("What-if", evaluation, kind="whatif", opening=picture.opening))
+
+    def with_errors(self, shown: Shown) -> Shown:
+        """The design with what is known of its errors now: its own where it was solved finer, else typical ones."""
+        evaluation = shown.evaluation
+        if not evaluation.ok or evaluation.level != TRUTH.number or evaluation.comparison_errors:
+            return shown
+        own = self._answers.known_refined(self.case, evaluation.variables)
+        if own is None or not own.ok:
+            return dataclasses.replace(shown, evaluation=with_stated_errors(self.case, evaluation))
+        known = {name: getattr(own, name) for name in (*ERROR_FIELDS, "errors_source")}
+        return dataclasses.replace(shown, evaluation=dataclasses.replace(evaluation, **known))
+
+    def refine(self, variables: DesignVariables) -> Evaluation:
+        """A design at level 2 with its own errors; a few seconds, then remembered."""
+        return self._answers.refined(self.case, variables)
 
     def again(self, saved: object) -> Shown | None:
         """The design that ``Shown.saved`` described, or None where it no longer exists."""

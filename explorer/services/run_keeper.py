@@ -6,11 +6,12 @@ picture is made on the shared worker, at most a few times a second, from what is
 
 from __future__ import annotations
 
+import contextlib
 import dataclasses
 import itertools
 import os
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -36,6 +37,9 @@ from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.events import RunEvent
 from hpsop_core.runs.lock import is_being_written
 from hpsop_core.runs.reader import RunReader, open_run
+from hpsop_core.runs.records import comparison_errors
+from hpsop_core.runs.refinement import keep_errors
+from hpsop_core.runs.store import RunStore
 
 _STATES = {
     "new": STARTING,
@@ -187,6 +191,18 @@ class RunKeeper:
                 self._controller = None
         self._on_news()
         return number
+
+    def keep_errors(self, design_id: int, evaluation: Evaluation) -> None:
+        """Keep a design's errors in the file; nothing where it is being written, or is the demonstration."""
+        with self._guard:
+            if self._read_only or self._controller is not None or is_being_written(self.path):
+                return
+            with contextlib.suppress(HpsopError):
+                store = RunStore(self.path)
+                try:
+                    keep_errors(store, {design_id: evaluation.as_dict()})
+                finally:
+                    store.close()
 
     @property
     def writable(self) -> bool:
@@ -352,13 +368,18 @@ class RunKeeper:
             elapsed=elapsed,
             predictions=self._predictions,
             opening=self.opening,
-            errors={
-                record.id: record.evaluation.errors
-                for record in reader.designs(newest.front if newest is not None else ())
-                if record.evaluation.ok and record.evaluation.errors
-            },
+            comparison=self._comparison(reader, generations),
         )
         return self._picture
+
+    def _comparison(
+        self, reader: RunReader, generations: Sequence[GenerationPicture]
+    ) -> Mapping[int, Mapping[str, float]]:
+        if not generations:
+            return {}
+        # Read before, so nothing is opened here.
+        known = {record.id: comparison_errors(record.evaluation) for record in reader.designs(generations[-1].front)}
+        return {number: widths for number, widths in known.items() if widths}
 
     def _read_new(self, reader: RunReader) -> None:
         points = [*reader.archive(after=self._complete_until(reader)), *reader.archive(by_hand=True)]

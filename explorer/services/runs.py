@@ -58,6 +58,12 @@ class Runs:
         """Whether the run on display can keep a hand-made design."""
         return self._keeper is not None and self._keeper.writable
 
+    def keep_errors(self, design_id: int, evaluation: Evaluation) -> None:
+        """Keep a design's errors in the run's file, where it rests and can be written."""
+        keeper = self._keeper
+        if keeper is not None:
+            keeper.keep_errors(design_id, evaluation)
+
     def start(self) -> None:
         """Start a new run of the case as set up.
 

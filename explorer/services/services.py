@@ -9,6 +9,7 @@ from explorer.services.designs import Designs
 from explorer.services.display import Display
 from explorer.services.library import RunLibrary
 from explorer.services.own_ships import Desk, OwnShips
+from explorer.services.refining import Refining
 from explorer.services.runs import Runs
 
 
@@ -20,14 +21,17 @@ class Services:
         designs: numbers, curves, shapes and fields of a design.
         runs: the run on display and the folder of runs.
         ships: a ship of the user's own, read and made the case.
+        refining: errors when asked.
     """
 
     designs: Designs
     runs: Runs
     ships: OwnShips
+    refining: Refining
 
     def close(self) -> None:
         """Leave no process behind."""
+        self.refining.close()
         self.ships.close()
         self.runs.close()
 
@@ -46,4 +50,5 @@ def open_services(display: Page, library: RunLibrary, workers: int | None = None
     """
     designs = Designs(display)
     ships = OwnShips(display, library.folder / "ships")
-    return Services(designs, Runs(display, designs, library, workers), ships)
+    runs = Runs(display, designs, library, workers)
+    return Services(designs, runs, ships, Refining(display, designs, runs))

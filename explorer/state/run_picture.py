@@ -53,9 +53,9 @@ class RunPicture:
         columns: quantity keys of the table.
         generations: finished generations in order.
         compromise, knee: ids on the newest front, or None.
-        errors: half widths by quantity of those of the newest front that were solved on a finer mesh, by id.
         seconds_left: an honest guess, or None.
         elapsed: seconds of work so far.
+        comparison: errors of the newest front's designs in a comparison, by id and quantity, where they are known.
     """
 
     name: str
@@ -79,7 +79,7 @@ class RunPicture:
     elapsed: float = 0.0
     predictions: int = 0
     opening: int = 0
-    errors: Mapping[int, Mapping[str, float]] = field(default_factory=dict)
+    comparison: Mapping[int, Mapping[str, float]] = field(default_factory=dict)
 
     def __post_init__(self) -> None:
         """One consistent picture: as many of everything as there are designs, a column of the table for each key.

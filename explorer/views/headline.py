@@ -19,7 +19,7 @@ _STATE_WORDS = {KEPT: "kept", LIMIT: "at its limit", VIOLATED: "violated", UNCOV
 
 @dataclass(frozen=True)
 class _Line:
-    """One number: what it is, from an evaluation, its unit and digits, has it the solvers' error, by what name."""
+    """One number: what it is, from an evaluation, its unit and digits, has it the solvers' error, name and scale."""
 
     words: str
     value: Callable[[Evaluation], float | None]
@@ -27,6 +27,7 @@ class _Line:
     decimals: int
     solved: bool = True
     error: str = ""
+    scale: float = 1e-6
 
 
 def _power(index: int) -> Callable[[Evaluation], float | None]:
@@ -70,8 +71,8 @@ def _lines(evaluation: Evaluation, density: float) -> list[_Line]:
         for index in sorted(chosen, reverse=True)
     ]
     lines += [
-        _Line("fuel", _tonnes("fuel_per_hour"), "t/h", 2),
-        _Line("CO₂", _tonnes("carbon_dioxide_per_hour"), "t/h", 2),
+        _Line("fuel", _tonnes("fuel_per_hour"), "t/h", 2, error="fuel_per_hour", scale=1e-3),
+        _Line("CO₂", _tonnes("carbon_dioxide_per_hour"), "t/h", 2, error="carbon_dioxide_per_hour", scale=1e-3),
         _Line("displacement", _displacement(density), "t", 0, False),
         _Line("GM", _hull("metacentric_height"), "m", 2, False),
     ]
@@ -81,8 +82,8 @@ def _lines(evaluation: Evaluation, density: float) -> list[_Line]:
 def headline_card(case: Case, initial: Shown | None, shown: Shown) -> Markup:
     """Power, fuel, CO2, displacement and stability, before and after.
 
-    The error is that of a comparison of two designs at their level, as the studies of the solvers state it
-    (``optimization.families``).
+    The error of a change is the designs' own where they were solved finer, else that of a comparison of two designs at
+    their level as the studies of the solvers state it; what all designs share (k, wake) is in the number's error alone.
 
     Args:
         case: of both.
@@ -104,13 +105,14 @@ def headline_card(case: Case, initial: Shown | None, shown: Shown) -> Markup:
         text = number_text(value, line.decimals)
         if line.error in evaluation.errors:
             # of the number alone: what two designs have in common falls out of the change
-            text += f" ± {number_text(1e-6 * evaluation.errors[line.error], line.decimals)}"
+            text += f" ± {number_text(line.scale * evaluation.errors[line.error], line.decimals)}"
         change = Markup("")
         if old is not None:
             text = f"{number_text(old, line.decimals)} → {text}"
             words = change_text(old, value, line.decimals)
             if line.solved:
-                words = words.replace(" %", f" ± {100.0 * STATED_ERRORS[evaluation.level]:.1f} %")
+                own = evaluation.comparison_errors.get(line.error, STATED_ERRORS[evaluation.level])
+                words = words.replace(" %", f" ± {100.0 * own:.1f} %")
             tone = "" if not line.solved or words.startswith("0") else "good" if value < old else "bad"
             change = fill('<span class="{}">{}</span>', tone, words)
         rows.append(

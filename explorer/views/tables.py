@@ -74,7 +74,7 @@ def comparison_table(initial: Shown | None, selected: Shown | None, conditions: 
                 quantity.key,
                 _name(quantity),
                 quantity.text(initial.evaluation) if initial else "–",
-                quantity.text(selected.evaluation) if selected else "–",
+                _with_error(quantity, selected) if selected else "–",
                 _tone(quantity, first, second),
                 change,
             )
@@ -120,7 +120,7 @@ def many_table(initials: Mapping[int, Shown | None], designs: Sequence[Shown], c
             cells.append(
                 fill(
                     '<td>{}<br><span class="change {}">{}</span></td>',
-                    quantity.text(item.evaluation),
+                    _with_error(quantity, item),
                     _tone(quantity, base, value),
                     change,
                 )
@@ -166,7 +166,7 @@ def _conditions_side_by_side(shown: Shown, names: Sequence[str], groups: Sequenc
     for own in zip(*groups, strict=True):
         if all(quantity.value(shown.evaluation) is None for quantity in own):
             continue
-        cells = joined(fill("<td>{}</td>", quantity.text(shown.evaluation)) for quantity in own)
+        cells = joined(fill("<td>{}</td>", _with_error(quantity, shown)) for quantity in own)
         symbol = symbol_html(own[0].symbol.removesuffix("1").removesuffix("_"))
         rows.append(fill('<tr><td>{}</td>{}<td class="unit">{}</td></tr>', symbol, cells, own[0].unit))
     return _table(rows)
@@ -177,7 +177,18 @@ def _card_row(quantity: Quantity, shown: Shown) -> Markup:
         return Markup("")
     unit = fill(' <span class="unit">{}</span>', quantity.unit) if quantity.unit else ""
     symbol = symbol_html(quantity.symbol)
-    return fill("<tr><td>{}</td><td>{}{}</td></tr>", symbol, quantity.text(shown.evaluation), unit)
+    return fill("<tr><td>{}</td><td>{}{}</td></tr>", symbol, _with_error(quantity, shown), unit)
+
+
+def _with_error(quantity: Quantity, shown: Shown) -> Markup:
+    """A number with the half width of its 90 % interval, where one is stated."""
+    error = quantity.error_text(shown.evaluation)
+    number = quantity.text(shown.evaluation)
+    return (
+        fill('{} <span class="unit" data-error="{}">{}</span>', number, quantity.key, error)
+        if error
+        else fill("{}", number)
+    )
 
 
 def _name(quantity: Quantity) -> Markup:

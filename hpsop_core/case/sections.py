@@ -224,6 +224,9 @@ class ConstantsSection:
     atmospheric_pressure: float = number(101325.0, 8e4, 1.1e5, "pressure at the water surface", "Pa")
     vapour_pressure: float = number(1700.0, 0.0, 1e4, "vapour pressure", "Pa")
     form_factor: float = number(0.094, 0.0, 1.0, "k on ITTC-57 friction")
+    form_factor_uncertainty: float | None = optional_number(
+        0.0, 0.5, "half width of k's 90 % interval, for the errors; unstated: that of the formula, none for a stated k"
+    )
     form_factor_formula: str = choice(
         "stated",
         ("stated", "scaled", "holtrop"),
@@ -249,6 +252,9 @@ class ConstantsSection:
         ("taylor_quadratic", "linear", "holtrop", "stated"),
         "taylor_quadratic: least-squares fit of Taylor's single-screw table; linear: 0.5 CB - 0.05; holtrop: "
         "Holtrop's; stated: stated_wake_fraction for the initial design, the others by the change of Holtrop's",
+    )
+    wake_fraction_uncertainty: float | None = optional_number(
+        0.0, 0.3, "half width of w's 90 % interval, for the errors; unstated: that of the formula, none for a stated w"
     )
     stated_wake_fraction: float | None = optional_number(0.0, 0.6, "w of the initial design, for wake_formula = stated")
     thrust_deduction_formula: str = choice(

@@ -27,7 +27,7 @@ from hpsop_core.evaluation.levels import TRUTH
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.geometry.hull.input.options import ReadOptions
 from hpsop_core.model_test import MODEL_DIAMETER, MODEL_ROTATION_RATE, MODEL_VISCOSITY
-from hpsop_core.quantities import SHIP, standing_on
+from hpsop_core.quantities import OBJECTIVES, SHIP, condition_quantities, conditions_of, standing_on
 
 if TYPE_CHECKING:
     from hpsop_core.case.case import Case
@@ -42,7 +42,7 @@ def add_parsers(commands: Any) -> None:
     evaluate.add_argument("case", metavar="CASE", help="a shipped case's name or a TOML file")
     add_level(evaluate)
     add_set(evaluate)
-    evaluate.add_argument("--errors", action="store_true", help="level 2: solve on a finer mesh too, to state errors")
+    evaluate.add_argument("--errors", action="store_true", help="level 2: solve finer too, to state its own errors")
     add_json(evaluate)
     evaluate.set_defaults(handler=_evaluate)
 
@@ -101,7 +101,9 @@ def _evaluate(arguments: argparse.Namespace) -> int:
             raise InputError("evaluate: --errors solves on a finer mesh, which level 2 has; add --level 2")
         result = evaluate_with_errors(case, variables or case.initial.variables, arguments.level, None)
     else:
-        result = evaluate(case, variables, arguments.level)
+        from hpsop_core.evaluation.stated_errors import with_stated_errors
+
+        result = with_stated_errors(case, evaluate(case, variables, arguments.level))
     _tell_own_hull(case)
     if arguments.json:
         print_json(result.as_dict())
@@ -136,9 +138,6 @@ def print_evaluation(result: Evaluation) -> None:
     )
     if hull.booked_volume is not None:
         print(f"booked (affine form): CB {hull.booked_block_coefficient:.4f}, volume {hull.booked_volume:,.0f} m3")
-    if result.errors:
-        widths = ", ".join(f"{name} {width:.3g}" for name, width in result.errors.items())
-        print(f"half widths of 90 % intervals, SI units: {widths}")
     ship = [(item, item.value(result)) for item in SHIP]
     print("ship: " + ", ".join(f"{item.symbol.replace('_', ' ')} {item.text(result)} {item.unit}"
                                for item, value in ship if value is not None))  # fmt: skip
@@ -163,8 +162,34 @@ def print_evaluation(result: Evaluation) -> None:
     standing = standing_on(result)
     if standing:
         print(f"stands on: {'; '.join(standing)}")
+    _print_errors(result)
     for warning in result.warnings:
         print(f"warning: {warning}")
+
+
+def _print_errors(result: Evaluation) -> None:
+    """Half widths of 90 % intervals: of what is asked first, and what they consist of."""
+    if not result.errors:
+        return
+    asked = [
+        quantity
+        for quantity in (*OBJECTIVES, *SHIP, *condition_quantities(conditions_of(result)))
+        if quantity.key in ("f1", "f2", "fuel_per_hour")
+        or quantity.key.rpartition("_")[0] in ("total_resistance", "delivered_power", "rotation_rate_rpm")
+    ]
+    told = [
+        f"{item.symbol.replace('_', ' ')} {item.text(result)} {item.error_text(result)} {item.unit}".strip()
+        for item in asked
+        if item.error_text(result)
+    ]
+    how = "solved" if result.errors_source == "solved" else "typical of level 2; hpsop evaluate --errors solves them"
+    print(f"errors (half widths of 90 % intervals, {how}): {'; '.join(told)}")
+    for term, widths in result.error_terms.items():
+        parts = [f"{name} {width:.3g}" for name, width in widths.items()]
+        print(f"  of these, {term.replace('_', ' ')}: {', '.join(parts)}")
+    if result.comparison_errors:
+        parts = [f"{name} {100.0 * result.comparison_errors[name]:.2g} %" for name in ("f1", "f2")]
+        print(f"  in a comparison with another design: {', '.join(parts)}")
 
 
 _RESISTANCE_PARTS = (

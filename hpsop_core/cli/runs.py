@@ -16,7 +16,7 @@ from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController, front_designs
 from hpsop_core.runs.learning import surface_words
 from hpsop_core.runs.reader import RunReader, open_run
-from hpsop_core.runs.records import DesignRecord, front_families, identifier
+from hpsop_core.runs.records import DesignRecord, front_families, identifier, with_errors
 from hpsop_core.runs.refinement import refine_front
 
 
@@ -39,7 +39,7 @@ def add_parsers(commands: Any) -> None:
     show.add_argument("--front", action="store_true", help="the Pareto front")
     show.add_argument("--design", metavar="ID|initial|compromise", help="everything about one design (also: knee)")
     show.add_argument(
-        "--refine", action="store_true", help="solve the last front on a finer mesh first, to state its errors"
+        "--refine", action="store_true", help="solve the last front (or --design) finer first, to state its own errors"
     )
     show.add_argument("--generation", type=int, metavar="N", help="at generation N instead of the last one")
     add_json(show)
@@ -93,10 +93,15 @@ def _optimize(arguments: argparse.Namespace) -> int:
 
 
 def _show(arguments: argparse.Namespace) -> int:
+    run = open_run(arguments.run)
     if arguments.refine:
         progress = Progress(sys.stderr)
-        refine_front(arguments.run, lambda done, wanted: progress.line(f"on the finer mesh: {done} of {wanted}"))
-    run = open_run(arguments.run)
+        asked = None
+        if arguments.design is not None:
+            asked = [run.design(identifier(arguments.design), arguments.generation).id]
+        refine_front(
+            arguments.run, lambda done, wanted: progress.line(f"solved finer: {done} of {wanted}"), designs=asked
+        )
     if arguments.front and arguments.design is not None:
         raise InputError("show: --front and --design are two questions; ask one of them")
     if arguments.design is not None:
@@ -113,7 +118,7 @@ def _show(arguments: argparse.Namespace) -> int:
 
 
 def _show_design(run: RunReader, arguments: argparse.Namespace) -> None:
-    record = run.design(identifier(arguments.design), arguments.generation)
+    record = with_errors(run.case, run.design(identifier(arguments.design), arguments.generation))
     if arguments.json:
         print_json(record.as_dict())
         return
@@ -128,6 +133,7 @@ def _show_designs(run: RunReader, arguments: argparse.Namespace, designs: Sequen
     initial = run.initial(1 if generation is None else generation.level)
     bounds = run.case.bounds
     families, narrow = front_families(designs)
+    initial, *designs = (with_errors(run.case, record) for record in (initial, *designs))
     if arguments.json:
         document: dict[str, Any] = {
             "generation": 0 if generation is None else generation.number,

@@ -133,6 +133,18 @@ def finer_wave_answers(variables: HullVariables, froude_numbers: tuple[float, ..
     return TRUTH.solve_finer_waves(build_hull(variables), froude_numbers)
 
 
+@lru_cache(maxsize=512)
+def wider_wave_answers(variables: HullVariables, froude_numbers: tuple[float, ...]) -> tuple[WaveAnswer, ...]:
+    """As ``wave_answers`` at the true level, in its wider domain.
+
+    Raises:
+        SolverFailure: the solver cannot give a number.
+    """
+    if TRUTH.solve_wider_waves is None:
+        raise SolverFailure("waves", "the true level has no wider domain")
+    return TRUTH.solve_wider_waves(build_hull(variables), froude_numbers)
+
+
 def solve_waves(hull: Hull, level: int, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:
     """As ``wave_answers``, for a hull at hand.
 

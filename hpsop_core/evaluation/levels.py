@@ -19,7 +19,13 @@ if TYPE_CHECKING:
 
 
 REFINEMENT = 1.25
-"""Panels in each direction, over the working mesh's, with which final designs are solved again."""
+"""Panels of hull and water in each direction, over the working mesh's, with which final designs are solved again."""
+
+WIDENING = 1.5
+"""Size of the water's domain in each direction, over the working one's, likewise."""
+
+BLADE_REFINEMENT = 1.5
+"""Panels of blades and hub in each direction, likewise."""
 
 
 @dataclass(frozen=True)
@@ -63,8 +69,15 @@ class Level:
         solve_waves: (hull, Froude numbers) -> an answer at each, before any calibration; raises SolverFailure.
         solve_propeller: (propeller, advance coefficients, section drag) -> its solution; raises SolverFailure.
         caution: what a reader must know of results that all have this level; "" for the true one.
-        solve_finer_waves: the same on ``REFINEMENT`` times as many panels in each direction; None where there are none.
+        solve_finer_waves: as ``solve_waves`` on ``REFINEMENT`` times as many panels in each direction; None where there
+            are none.
+        solve_wider_waves: the same with a domain ``WIDENING`` times as large; None where there is none.
+        solve_finer_propeller: as ``solve_propeller`` on ``BLADE_REFINEMENT`` times as many panels; None likewise.
         is_calibrated: whether a case may scale its wave resistance to the true level's at the initial design.
+        comparison_error: half width of the 90 % interval of an objective between two designs, as a fraction, unless
+            their own is known. The true level: between forms that differ in fullness and LCB the default mesh scatters
+            by 3 % of the wave resistance, which is a fifth of the total (docs/theory-rankine.md, Mesh). Level 1: near
+            the optimum its first objective leaves level 2's by 0.02 (docs/what-to-believe.md).
     """
 
     number: int
@@ -73,7 +86,10 @@ class Level:
     solve_waves: Callable[[Hull, Sequence[float]], tuple[WaveAnswer, ...]]
     solve_propeller: Callable[[Propeller, Array, SectionDrag], PropellerSolution]
     is_calibrated: bool
+    comparison_error: float
     solve_finer_waves: Callable[[Hull, Sequence[float]], tuple[WaveAnswer, ...]] | None = None
+    solve_wider_waves: Callable[[Hull, Sequence[float]], tuple[WaveAnswer, ...]] | None = None
+    solve_finer_propeller: Callable[[Propeller, Array, SectionDrag], PropellerSolution] | None = None
 
 
 def _thin_ship(hull: Hull, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:
@@ -92,11 +108,17 @@ def _lifting_line(propeller: Propeller, advance: Array, drag: SectionDrag) -> Pr
     return PropellerSolution(lifting_line.solve(propeller, advance, drag))
 
 
-def _rankine_panels(hull: Hull, froude_numbers: Sequence[float], refinement: float = 1.0) -> tuple[WaveAnswer, ...]:
+def _rankine_panels(
+    hull: Hull, froude_numbers: Sequence[float], refinement: float = 1.0, widening: float = 1.0
+) -> tuple[WaveAnswer, ...]:
     from hpsop_core.hydro.rankine import solver as rankine
 
     try:
-        settings = None if refinement == 1.0 else rankine.RankineSettings().refined(refinement)
+        settings = None
+        if refinement != 1.0:
+            settings = rankine.RankineSettings().refined(refinement)
+        elif widening != 1.0:
+            settings = rankine.RankineSettings().widened(widening)
         result = rankine.solve(hull, froude_numbers, settings)
     except InputError as problem:
         # Froude numbers follow from a design's length at fixed speed: out of range is that design's failure.
@@ -111,11 +133,23 @@ def _finer_rankine_panels(hull: Hull, froude_numbers: Sequence[float]) -> tuple[
     return _rankine_panels(hull, froude_numbers, REFINEMENT)
 
 
-def _blade_panels(propeller: Propeller, advance: Array, drag: SectionDrag) -> PropellerSolution:
-    from hpsop_core.hydro.blade_panels import solver as blade_panels
+def _wider_rankine_panels(hull: Hull, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:
+    return _rankine_panels(hull, froude_numbers, widening=WIDENING)
 
-    panels = blade_panels.solve(propeller, advance, drag)
+
+def _blade_panels(
+    propeller: Propeller, advance: Array, drag: SectionDrag, refinement: float = 1.0
+) -> PropellerSolution:
+    from hpsop_core.hydro.blade_panels import solver as blade_panels
+    from hpsop_core.hydro.blade_panels.settings import BladePanelSettings
+
+    settings = None if refinement == 1.0 else BladePanelSettings().refined(refinement)
+    panels = blade_panels.solve(propeller, advance, drag, settings)
     return PropellerSolution(panels.open_water, panels.pressure_table)
+
+
+def _finer_blade_panels(propeller: Propeller, advance: Array, drag: SectionDrag) -> PropellerSolution:
+    return _blade_panels(propeller, advance, drag, BLADE_REFINEMENT)
 
 
 FAST = Level(
@@ -127,6 +161,7 @@ FAST = Level(
     solve_waves=_thin_ship,
     solve_propeller=_lifting_line,
     is_calibrated=True,
+    comparison_error=0.02,
 )
 """Searches wide."""
 
@@ -137,7 +172,10 @@ TRUTH = Level(
     solve_waves=_rankine_panels,
     solve_propeller=_blade_panels,
     is_calibrated=False,
+    comparison_error=0.006,
     solve_finer_waves=_finer_rankine_panels,
+    solve_wider_waves=_wider_rankine_panels,
+    solve_finer_propeller=_finer_blade_panels,
 )
 """What a front is judged by."""
 

@@ -4,7 +4,8 @@ from __future__ import annotations
 
 import contextlib
 from collections.abc import Callable
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -15,11 +16,13 @@ from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation import shipped_calibration
 from hpsop_core.evaluation.condition import condition_result
 from hpsop_core.evaluation.hull_answer import (
+    HullVariables,
     build_hull,
     finer_wave_answers,
     hull_variables,
     resistance_point,
     wave_answers,
+    wider_wave_answers,
 )
 from hpsop_core.evaluation.hull_propulsion import (
     HoltropNumbers,
@@ -35,6 +38,7 @@ from hpsop_core.evaluation.levels import TRUTH, Level, WaveAnswer, level_of
 from hpsop_core.evaluation.propeller_answer import (
     PropellerAnswer,
     build_propeller,
+    finer_propeller_answer,
     propeller_answer,
     propeller_variables,
 )
@@ -183,8 +187,25 @@ def compute(
     return _assembled(case, variables, level, basis, froude_numbers, hull, waves, answer)
 
 
-def compute_finer(case: Case, variables: DesignVariables, basis: Basis) -> Physics:
-    """A design's physics at the true level with its waves on the finer mesh.
+@dataclass(frozen=True)
+class Trial:
+    """What is done differently from ``compute`` at the true level, to see what it is worth.
+
+    Attributes:
+        waves: "finer" mesh, "wider" domain; "pressure": plus half of what the finer mesh's pressures exceed its
+            momentum planes by; "" as ever.
+        finer_blades: the propeller on finer panels.
+        form_factor, wake_fraction: added to k and to w at every condition; t stays.
+    """
+
+    waves: Literal["", "finer", "wider", "pressure"] = ""
+    finer_blades: bool = False
+    form_factor: float = 0.0
+    wake_fraction: float = 0.0
+
+
+def compute_trial(case: Case, variables: DesignVariables, basis: Basis, trial: Trial) -> Physics:
+    """A design's physics at the true level with something done differently.
 
     Raises:
         SolverFailure: as ``compute``.
@@ -193,9 +214,30 @@ def compute_finer(case: Case, variables: DesignVariables, basis: Basis) -> Physi
     hull = build_hull(hull_key)
     froude_numbers = own_froude_numbers(case, hull, basis.speeds)
     propeller_key = propeller_variables(case.propeller, variables)
-    answer = propeller_answer(propeller_key, TRUTH.number, case.constants.propeller_roughness)
-    waves = finer_wave_answers(hull_key, froude_numbers)
-    return _assembled(case, variables, TRUTH.number, basis, froude_numbers, hull, waves, answer)
+    roughness = case.constants.propeller_roughness
+    if trial.finer_blades:
+        answer = finer_propeller_answer(propeller_key, roughness)
+    else:
+        answer = propeller_answer(propeller_key, TRUTH.number, roughness)
+    waves = _trial_waves(hull_key, froude_numbers, trial)
+    return _assembled(case, variables, TRUTH.number, basis, froude_numbers, hull, waves, answer, trial=trial)
+
+
+def _trial_waves(key: HullVariables, froude_numbers: tuple[float, ...], trial: Trial) -> tuple[WaveAnswer, ...]:
+    if trial.waves == "finer":
+        return finer_wave_answers(key, froude_numbers)
+    if trial.waves == "wider":
+        return wider_wave_answers(key, froude_numbers)
+    plain = wave_answers(key, TRUTH.number, froude_numbers)
+    if trial.waves != "pressure":
+        return plain
+    finer = finer_wave_answers(key, froude_numbers)
+    return tuple(
+        replace(own, wave_coefficient=own.wave_coefficient + 0.5 * (pressure - other.wave_coefficient))
+        if (pressure := other.wave_coefficient_pressure) is not None
+        else own
+        for own, other in zip(plain, finer, strict=True)
+    )
 
 
 def _assembled(
@@ -208,6 +250,7 @@ def _assembled(
     waves: tuple[WaveAnswer, ...],
     answer: PropellerAnswer,
     predicted: bool = False,
+    trial: Trial | None = None,
 ) -> Physics:
     """What follows from the answers about waves and propeller."""
     constants = case.constants
@@ -225,6 +268,11 @@ def _assembled(
         own = holtrop_numbers(ship, propeller.diameter, propeller.expanded_area_ratio, speeds, constants.viscosity)
         cautions += holtrop_warnings(ship, speeds, constants.gravity)
     propulsion = propulsion_factors(constants, block_coefficient, len(froude_numbers), own, basis.holtrop)
+    if trial is not None:
+        resistance = replace(resistance, form_factor=resistance.form_factor + trial.form_factor)
+        propulsion = tuple(
+            replace(factors, wake_fraction=factors.wake_fraction + trial.wake_fraction) for factors in propulsion
+        )
     calibration = basis.calibration_of(case, hull, variables)
     conditions = tuple(
         condition_result(

@@ -12,7 +12,8 @@ import numpy as np
 
 from hpsop_core.case.sections import PropellerSection
 from hpsop_core.case.variables import DesignVariables
-from hpsop_core.evaluation.levels import level_of
+from hpsop_core.errors import SolverFailure
+from hpsop_core.evaluation.levels import TRUTH, level_of
 from hpsop_core.geometry.propeller.input import radial_table_from_csv
 from hpsop_core.geometry.propeller.propeller import Propeller, RadialTable, load_propeller, propeller_family
 from hpsop_core.hydro.open_water import OpenWater, SectionDrag
@@ -107,6 +108,21 @@ def propeller_answer(variables: PropellerVariables, level: int, roughness: float
     result = solution.open_water
     pressures = solution.pressures() if solution.pressures else None
     return PropellerAnswer(PropellerCurve(nodes, result.thrust_coefficient, result.torque_coefficient), pressures)
+
+
+@lru_cache(maxsize=512)
+def finer_propeller_answer(variables: PropellerVariables, roughness: float) -> PropellerAnswer:
+    """As ``propeller_answer`` at the true level, on its finer panels; without pressures.
+
+    Raises:
+        SolverFailure: the solver does not converge; names the J.
+    """
+    if TRUTH.solve_finer_propeller is None:
+        raise SolverFailure("propeller", "the true level has no finer panels")
+    nodes = chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
+    drag = SectionDrag.full_scale(roughness)
+    result = TRUTH.solve_finer_propeller(build_propeller(variables), nodes, drag).open_water
+    return PropellerAnswer(PropellerCurve(nodes, result.thrust_coefficient, result.torque_coefficient), None)
 
 
 def solve_open_water(

@@ -45,6 +45,11 @@ class Ok:
             consumption.
         attained_eedi_g_per_tonne_mile: grams of CO2 per tonne and nautical mile; None where it is not known.
         errors: half width of the 90 % interval by the name of a quantity, where it is known.
+        comparison_errors: the same for the quantity's ratio to the initial design's, as a fraction of it, without what
+            all designs share: what decides whether two designs can be told apart.
+        error_terms: what ``errors`` consists of, for the main quantities: half widths by quantity, by term.
+        errors_source: "solved": from this design's own solutions (``evaluation.errors``); "stated": typical ones
+            (``evaluation.stated_errors``); "" where there are none.
         elapsed: wall time in s; the only field that differs from run to run.
         predicted: waves and open-water curve are a learnt surface's (``evaluation.surface``), not the solvers'.
     """
@@ -71,6 +76,9 @@ class Ok:
     carbon_dioxide_per_hour: float | None = None
     attained_eedi_g_per_tonne_mile: float | None = None
     errors: Mapping[str, float] = field(default_factory=dict)
+    comparison_errors: Mapping[str, float] = field(default_factory=dict)
+    error_terms: Mapping[str, Mapping[str, float]] = field(default_factory=dict)
+    errors_source: str = ""
     elapsed: float = 0.0
     predicted: bool = False
 
@@ -97,6 +105,9 @@ class Ok:
             "active_bounds": dict(self.active_bounds),
             **{name: getattr(self, name) for name in _PROFILE},
             "errors": dict(self.errors),
+            "comparison_errors": dict(self.comparison_errors),
+            "error_terms": {term: dict(widths) for term, widths in self.error_terms.items()},
+            "errors_source": self.errors_source,
             "elapsed": self.elapsed,
             "stage": self.stage,
             "predicted": self.predicted,
@@ -135,6 +146,9 @@ class Failed:
     carbon_dioxide_per_hour: ClassVar[None] = None
     attained_eedi_g_per_tonne_mile: ClassVar[None] = None
     errors: ClassVar[Mapping[str, float]] = {}
+    comparison_errors: ClassVar[Mapping[str, float]] = {}
+    error_terms: ClassVar[Mapping[str, Mapping[str, float]]] = {}
+    errors_source: ClassVar[str] = ""
 
     case: str
     level: int
@@ -163,6 +177,9 @@ class Failed:
             "active_bounds": {},
             **dict.fromkeys(_PROFILE),
             "errors": {},
+            "comparison_errors": {},
+            "error_terms": {},
+            "errors_source": "",
             "elapsed": self.elapsed,
             "stage": self.stage,
             "predicted": self.predicted,
@@ -195,6 +212,9 @@ def evaluation_from_dict(data: Mapping[str, Any]) -> Evaluation:
         active_bounds=data.get("active_bounds", {}),
         **{name: data.get(name) for name in _PROFILE},
         errors=data.get("errors", {}),
+        comparison_errors=data.get("comparison_errors", {}),
+        error_terms=data.get("error_terms", {}),
+        errors_source=data.get("errors_source", ""),
         elapsed=data.get("elapsed", 0.0),
         predicted=data.get("predicted", False),
     )

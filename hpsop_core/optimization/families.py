@@ -10,15 +10,11 @@ from collections.abc import Mapping, Sequence
 
 import numpy as np
 
+from hpsop_core.evaluation.levels import LEVELS
 from hpsop_core.typing_aliases import Array, IntArray
 
-STATED_ERRORS: Mapping[int, float] = {1: 0.02, 2: 0.006}
-"""Relative error of an objective between two designs at a level.
-
-Level 2: between forms that differ in fullness and LCB the default mesh scatters by 3 % of the wave resistance, which is
-a fifth of the total (docs/theory-rankine.md, Mesh). Level 1: near the optimum its first objective leaves level 2's by
-0.02 (docs/what-to-believe.md).
-"""
+STATED_ERRORS: Mapping[int, float] = {level.number: level.comparison_error for level in LEVELS}
+"""Relative error of an objective between two designs at a level."""
 
 
 def half_widths(levels: Sequence[int], objectives: Array, errors: Sequence[Mapping[str, float]] = ()) -> Array:
@@ -27,7 +23,8 @@ def half_widths(levels: Sequence[int], objectives: Array, errors: Sequence[Mappi
     Args:
         levels: (n,) of the evaluations.
         objectives: (n, 2).
-        errors: (n,) the evaluations' own by quantity, f1 and f2 among them where they are known; or none at all.
+        errors: (n,) the evaluations' own in a comparison, by quantity, as fractions of it, f1 and f2 among them where
+            they are known; or none at all. What all designs share (k, wake) is not in them.
 
     Returns:
         Shape (n, 2).
@@ -37,7 +34,7 @@ def half_widths(levels: Sequence[int], objectives: Array, errors: Sequence[Mappi
     for row, known in enumerate(errors):
         for column, name in enumerate(("f1", "f2")):
             if name in known:
-                widths[row, column] = known[name]
+                widths[row, column] = known[name] * abs(objectives[row, column])
     return np.asarray(widths)
 
 

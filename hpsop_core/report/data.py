@@ -16,7 +16,7 @@ from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.optimization.generation import Generation
 from hpsop_core.report.looks import COMPROMISE_LOOK, INITIAL_LOOK, SPREAD_ROLES
 from hpsop_core.runs.reader import RunReader
-from hpsop_core.runs.records import DesignRecord
+from hpsop_core.runs.records import DesignRecord, with_errors
 
 CHART_ABOVE = 0.03
 """Resistance is drawn this far above the greatest Froude number: beyond, the curve would dwarf the working range."""
@@ -66,10 +66,10 @@ class ReportData:
         """The run as it is now."""
         generations = run.generations()
         last = generations[-1] if generations else None
-        front = run.designs(last.front) if last is not None else ()
+        front = tuple(with_errors(run.case, record) for record in run.designs(last.front)) if last is not None else ()
         by_id = {record.id: record for record in front}
         try:
-            initial = run.initial(1 if last is None else last.level)
+            initial = with_errors(run.case, run.initial(1 if last is None else last.level))
         except InputError:
             initial = None
         return cls(

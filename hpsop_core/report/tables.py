@@ -91,15 +91,30 @@ def result_table(case: Case, initial: DesignRecord, others: Sequence[tuple[str, 
         if quantity.group != group:
             group = quantity.group
             rows.append([group])
-        cells: list[Words] = [quantity.text(initial.evaluation)]
+        cells: list[Words] = [_with_error(quantity, initial.evaluation)]
         for _, record in others:
             change = _change(quantity, initial.evaluation, record.evaluation)
-            cells.append(joined((quantity.text(record.evaluation), change)))
+            cells.append(joined((_with_error(quantity, record.evaluation), change)))
         rows.append([_named(quantity, case), *cells])
     rows.append(["Constraints"])
     kept = ["yes" if record.evaluation.feasible else "no" for record in (initial, *(record for _, record in others))]
     rows.append(["all constraints that apply are kept", *kept])
-    return table(header, rows, caption="Beside each number: change against the initial design at the same level")
+    solved = {record.evaluation.errors_source for record in (initial, *(record for _, record in others))}
+    caption = "Beside each number: change against the initial design at the same level."
+    return table(header, rows, caption=f"{caption} {_ERROR_WORDS.get(max(solved), '')}".strip())
+
+
+_ERROR_WORDS = {
+    "solved": "±: half width of the 90 % interval; what all designs share in it (k, wake) falls out of a change.",
+    "stated": "±: half width of the 90 % interval, typical of level 2; `hpsop show RUN --refine` solves each its own.",
+}
+
+
+def _with_error(quantity: Quantity, evaluation: Evaluation) -> Words:
+    """A number with its half width, where one is stated."""
+    error = quantity.error_text(evaluation)
+    number = quantity.text(evaluation)
+    return joined((number, fill(' <span class="unit">{}</span>', error))) if error else number
 
 
 def front_table(case: Case, front: Sequence[DesignRecord], marks: Mapping[int, str]) -> Markup:
@@ -119,7 +134,7 @@ def front_table(case: Case, front: Sequence[DesignRecord], marks: Mapping[int, s
         [
             str(record.id),
             marks.get(record.id, ""),
-            *(joined((q.text(record.evaluation), _side(record, q.key))) for q in columns),
+            *(joined((_with_error(q, record.evaluation), _side(record, q.key))) for q in columns),
             str(family),
         ]
         for record, family in zip(front, belongs, strict=True)

@@ -29,6 +29,7 @@ from hpsop_core.runs.records import (
     GenerationRecord,
     generation_from_text,
     generations_asked,
+    known_errors,
     named_variables,
 )
 from hpsop_core.runs.schema import COLUMNS, FIRST_SEARCH_ID, HAND_IDS_BEGIN, schema_version
@@ -301,8 +302,8 @@ class RunReader:
         errors = self._errors(fresh=bool(missing))
         return tuple(_with_errors(self._designs[number], errors.get(str(number))) for number in ids)
 
-    def _errors(self, fresh: bool) -> dict[str, dict[str, float]]:
-        """Half widths by quantity, by the design's id, of designs that were solved on a finer mesh.
+    def _errors(self, fresh: bool) -> dict[str, dict[str, Any]]:
+        """The error fields by the design's id, of designs that were solved finer.
 
         They come when the designs have long been read: looked for again whenever the file was changed.
         """
@@ -313,7 +314,7 @@ class RunReader:
         changed = (status.st_mtime_ns, status.st_size)
         if fresh or changed != self._errors_of:
             with self._reading() as content:
-                self._known_errors = json.loads(content.values().get("errors", "{}"))
+                self._known_errors = known_errors(content.values())
             self._errors_of = changed
         return self._known_errors
 
@@ -451,10 +452,12 @@ class RunReader:
         return found.get(level)
 
 
-def _with_errors(record: DesignRecord, errors: Mapping[str, float] | None) -> DesignRecord:
-    if errors is None or not record.evaluation.ok:
+def _with_errors(record: DesignRecord, fields: Mapping[str, Any] | None) -> DesignRecord:
+    if fields is None or not record.evaluation.ok:
         return record
-    return dataclasses.replace(record, evaluation=dataclasses.replace(record.evaluation, errors=errors))
+    return dataclasses.replace(
+        record, evaluation=dataclasses.replace(record.evaluation, **fields, errors_source="solved")
+    )
 
 
 def _surface_summary(values: Mapping[str, str], searched: Sequence[Mapping[str, Any]]) -> dict[str, Any]:

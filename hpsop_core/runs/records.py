@@ -12,6 +12,7 @@ from typing import Any
 
 import numpy as np
 
+from hpsop_core.case.case import Case
 from hpsop_core.case.fields import rules
 from hpsop_core.case.sections import OptimizationSection
 from hpsop_core.case.variables import DesignVariables
@@ -46,6 +47,8 @@ class DesignRecord:
             "variables": self.evaluation.variables.as_dict(),
             "feasible": self.evaluation.feasible,
             "errors": dict(self.evaluation.errors),
+            "comparison_errors": dict(self.evaluation.comparison_errors),
+            "errors_source": self.evaluation.errors_source,
             "predicted": self.evaluation.predicted,
         }
 
@@ -111,9 +114,49 @@ def front_families(records: Sequence[DesignRecord]) -> tuple[tuple[int, ...], st
         return (0,) * len(records), ""
     points = np.array([[record.evaluation.objectives["f1"], record.evaluation.objectives["f2"]] for record in known])
     levels = [record.evaluation.level for record in known]
-    widths = half_widths(levels, points, [record.evaluation.errors for record in known])
+    widths = half_widths(levels, points, [comparison_errors(record.evaluation) for record in known])
     named = {record.id: int(family) for record, family in zip(known, families(points, widths), strict=True)}
     return tuple(named.get(record.id, 0) for record in records), narrow(points, widths)
+
+
+def with_errors(case: Case, record: DesignRecord) -> DesignRecord:
+    """The design with typical errors where it has none of its own (``evaluation.stated_errors``)."""
+    # Reading a run shall not load what only some of its readers ask for.
+    from hpsop_core.evaluation.stated_errors import with_stated_errors
+
+    return dataclasses.replace(record, evaluation=with_stated_errors(case, record.evaluation))
+
+
+ERROR_FIELDS = ("errors", "comparison_errors", "error_terms")
+"""Of an evaluation: what a finer solution adds to it."""
+
+ERRORS_KEY = "error_widths"
+"""Where the run file's table ``run`` has these fields of its refined designs, by id."""
+
+_EARLIER_KEY = "errors"  # earlier versions kept the first field alone, without domain, propeller and inputs in it
+
+
+def known_errors(values: Mapping[str, str]) -> dict[str, dict[str, Any]]:
+    """The error fields by the design's id, as text.
+
+    Args:
+        values: of the run file's table ``run``.
+    """
+    earlier = json.loads(values.get(_EARLIER_KEY, "{}"))
+    found = {number: {"errors": widths} for number, widths in earlier.items()}
+    found |= json.loads(values.get(ERRORS_KEY, "{}"))
+    return found
+
+
+def comparison_errors(evaluation: Evaluation) -> Mapping[str, float]:
+    """An evaluation's own errors in a comparison, as fractions; those of files of before there were such: of f1, f2."""
+    if evaluation.comparison_errors or not evaluation.ok:
+        return evaluation.comparison_errors
+    return {
+        name: evaluation.errors[name] / abs(value)
+        for name, value in evaluation.objectives.items()
+        if value and name in evaluation.errors
+    }
 
 
 def json_text(value: Any) -> str:

@@ -173,20 +173,20 @@ class RunDriver:
         tasks = [
             (number, Candidate(TRUTH.number, variables, "initial"), reference) for number, variables in wanted.items()
         ]
-        errors: dict[int, Mapping[str, float]] = {}
+        refined: dict[int, Mapping[str, Any]] = {}
 
         def finished(number: int, candidate: Candidate, result: str) -> None:
-            errors[number] = json.loads(result)["errors"]
+            refined[number] = json.loads(result)
 
         def paused(now: bool) -> None:
             self._change_state("paused" if now else "running", "")
 
-        self._tell("state", reason="the front is solved on a finer mesh")
+        self._tell("state", reason="the front is solved again, finer, for its errors")
         evaluator = BatchEvaluator(
             self._ready_workers(), self._physics.refine, self._case, self._control, self._lost, self._physics.warm_up
         )
         complete = evaluator.run(tasks, finished, paused)
-        self._keep(lambda: keep_errors(self._store, errors))
+        self._keep(lambda: keep_errors(self._store, refined))
         if not complete:
             raise _StoppedError
 

@@ -79,6 +79,10 @@ ELSEWHERE = {
         *(f"constraints.{name}" for name in ("cavitation_conditions", "cavitation_criterion", "least_tip_clearance")),
         *(f"constraints.{name}" for name in ("greatest_length", "greatest_breadth", "back_cavitation_limit")),
     },
+    "tests/invariance/test_final_errors.py": {
+        "constants.form_factor_uncertainty",
+        "constants.wake_fraction_uncertainty",
+    },
     "this file, below": {
         "conditions.weights",
         "objectives.first",

@@ -47,7 +47,7 @@ def test_families_do_not_depend_on_the_order_of_the_designs() -> None:
 
 
 def test_an_evaluations_own_errors_come_before_the_stated_ones() -> None:
-    widths = half_widths([1, 2], np.array([[1.0, 0.5], [2.0, 1.0]]), [{}, {"f1": 0.125}])
+    widths = half_widths([1, 2], np.array([[1.0, 0.5], [2.0, 1.0]]), [{}, {"f1": 0.0625}])
     assert widths == pytest.approx(
         np.array([[STATED_ERRORS[1], 0.5 * STATED_ERRORS[1]], [0.125, STATED_ERRORS[2]]]), rel=1e-12
     )
@@ -94,7 +94,7 @@ def test_the_pareto_chart_has_one_mark_with_a_count_for_a_family() -> None:
 def test_the_pareto_charts_families_are_those_of_the_designs_own_errors() -> None:
     # As the report and `show` have them: three of the six were solved on a finer mesh.
     own = {1: {"f1": 1e-4, "f2": 1e-4}, 2: {"f1": 1e-4, "f2": 1e-4}, 5: {"f1": 0.02, "f2": 0.02}}
-    run = dataclasses.replace(picture(FRONT), errors=own)
+    run = dataclasses.replace(picture(FRONT), comparison=own)
     widths = half_widths([2] * 6, FRONT, [own.get(number, {}) for number in range(1, 7)])
     assert newest_families(run)[1] == tuple(families(FRONT, widths)) != newest_families(picture(FRONT))[1]
 

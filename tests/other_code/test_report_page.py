@@ -18,7 +18,7 @@ from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.propulsion import open_water_chart, resistance_chart, thrust_chart
 from hpsop_core.charts.search import convergence_chart
 from hpsop_core.evaluation.curves import hull_lines, resistance_points, thrust_curves
-from hpsop_core.quantities import all_quantities, condition_names, number_text
+from hpsop_core.quantities import Quantity, all_quantities, condition_names, number_text
 from hpsop_core.report.data import ReportData
 from hpsop_core.report.looks import COMPROMISE_LOOK, INITIAL_LOOK, SHEET
 from hpsop_core.report.paper_figures import evolution_figure, open_water_figure, resistance_figure, thrust_figure
@@ -27,7 +27,7 @@ from hpsop_core.report.search import archive_clouds, pareto_figure
 from hpsop_core.report.tables import failure_table
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.reader import RunReader, open_run
-from hpsop_core.runs.records import Failure
+from hpsop_core.runs.records import DesignRecord, Failure
 from tests.two_speeds import TWO_SPEEDS
 
 TITLE = "<script>alert('Hull & \"screw\"')</script> $\\frac{1}{2 d·Ω"
@@ -76,6 +76,19 @@ def test_the_cases_words_are_text(page: Page, source: str) -> None:
     assert "<script" not in source and "alert('" not in source
 
 
+UNITS = {"delivered_power": 1e-6, "total_resistance": 1e-3, "open_water_efficiency": 1.0}
+
+
+def with_error(quantity: Quantity, record: DesignRecord) -> str:
+    """The number, and at level 2 its error where one is stated."""
+    number = number_text(quantity.value(record.evaluation), quantity.decimals)
+    width = record.evaluation.errors.get(quantity.key)
+    if width is None:
+        assert quantity.key == "length"
+        return number
+    return f"{number} ± {number_text(UNITS[quantity.key[:-2]] * width, quantity.decimals)}"
+
+
 def test_the_result_table_holds_the_runs_numbers(page: Page, run: RunReader) -> None:
     data = ReportData.of(run)
     assert data.level == 2 and data.initial is not None and data.compromise is not None
@@ -93,12 +106,11 @@ def test_the_result_table_holds_the_runs_numbers(page: Page, run: RunReader) -> 
         quantity = quantities[key]
         cells = named[f"{quantity.label} {quantity.symbol.replace('_', '')}"][0]
         initial = quantity.value(chosen[0].evaluation)
-        assert cells[0] == number_text(initial, quantity.decimals)
+        assert cells[0] == with_error(quantity, chosen[0])
         for cell, record in zip(cells[1:], chosen[1:], strict=True):
             value = quantity.value(record.evaluation)
-            number = number_text(value, quantity.decimals)
-            assert cell.startswith(number)
-            change = cell.removeprefix(number).replace("−", "-").removesuffix(" %")
+            assert cell.startswith(with_error(quantity, record))
+            change = cell.removeprefix(with_error(quantity, record)).replace("−", "-").removesuffix(" %")
             assert float(change) == pytest.approx(100.0 * (value / initial - 1.0), abs=0.0501)
     power = data.compromise.evaluation.conditions[0].delivered_power
     assert f"{power / 1e6:.2f} MW instead of" in page.words["result"]
@@ -108,7 +120,9 @@ def test_the_front_is_whole(page: Page, run: RunReader) -> None:
     front = run.front()
     rows = page.tables["front"][0]
     assert [row[0] for row in rows[1:]] == [str(record.id) for record in front]
-    assert [row[2] for row in rows[1:]] == [number_text(record.evaluation.objectives["f1"], 4) for record in front]
+    numbers = [number_text(record.evaluation.objectives["f1"], 4) for record in front]
+    assert [row[2].split(" ±")[0] for row in rows[1:]] == numbers
+    assert all("±" in row[2] for row in rows[1:])
     compromise = str(run.generation().compromise)
     assert any(row[0] == compromise and "compromise" in row[1] for row in rows[1:])
 

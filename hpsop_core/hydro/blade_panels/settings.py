@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass, field
+from dataclasses import dataclass, field, replace
 from typing import Literal
 
 import numpy as np
@@ -110,6 +110,21 @@ class BladePanelSettings:
     def fine(cls) -> BladePanelSettings:
         """80 x 24 panels with pressure integration: the audit."""
         return cls(80, 24, forces="pressure", hub=HubSettings(5, 6, 36))
+
+    def refined(self, factor: float) -> BladePanelSettings:
+        """The same with ``factor`` times as many panels in each direction on blades and hub, round a section even."""
+
+        def scaled(count: int) -> int:
+            return round(count * factor)
+
+        hub = replace(
+            self.hub,
+            rows_cylinder=scaled(self.hub.rows_cylinder),
+            rows_end=scaled(self.hub.rows_end),
+            panels_round=scaled(self.hub.panels_round),
+        )
+        chordwise = 2 * scaled(self.chordwise_panels // 2)
+        return replace(self, chordwise_panels=chordwise, radial_panels=scaled(self.radial_panels), hub=hub)
 
     @property
     def text(self) -> str:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass, replace
 
 from hpsop_core.errors import InputError
@@ -81,3 +82,38 @@ class RankineSettings:
             columns_downstream=scaled(self.columns_downstream),
             rows=scaled(self.rows),
         )
+
+    def widened(self, factor: float) -> RankineSettings:
+        """A domain ``factor`` times as large in every direction, with cells that go on stretching as they do.
+
+        Along the hull and at it nothing changes, so that what comes out differently is the borders' doing.
+        """
+        column = 1.0 / self.columns_along_hull
+
+        def counted(first: float, length: float, count: int) -> int:
+            return _continued(first, length, count, factor * length)
+
+        return replace(
+            self,
+            upstream=factor * self.upstream,
+            downstream=factor * self.downstream,
+            half_width=factor * self.half_width,
+            columns_upstream=counted(column, self.upstream, self.columns_upstream),
+            columns_downstream=counted(column, self.downstream, self.columns_downstream),
+            rows=counted(self.first_row * column, self.half_width, self.rows),
+        )
+
+
+def _continued(first: float, length: float, count: int, wanted: float) -> int:
+    """Steps that reach ``wanted`` with the ratio by which ``count`` steps from ``first`` on reach ``length``."""
+
+    def total(ratio: float) -> float:
+        return first * sum(ratio**step for step in range(count))
+
+    low, high = 0.2, 5.0
+    for _ in range(60):
+        middle = 0.5 * (low + high)
+        low, high = (middle, high) if total(middle) < length else (low, middle)
+    # Cells that shrink outwards, or hardly grow, go on evenly.
+    growth = max(0.5 * (low + high), 1.001)
+    return max(count, round(math.log1p(wanted * (growth - 1.0) / first) / math.log(growth)))
