@@ -14,6 +14,7 @@ from hpsop_core.cli.main import main
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation import solvable
 from hpsop_core.evaluation.reference import Reference, reference_for
+from hpsop_core.geometry.foreign import apart
 from hpsop_core.geometry.hull.input import ReadOptions, read_hull, read_table
 
 LENGTH, BREADTH, DRAFT = 120.0, 17.0, 6.5
@@ -183,16 +184,7 @@ def test_holes_and_what_crosses_a_section_twice(tmp_path: Path) -> None:
 
 
 def test_cad_without_its_library_says_what_to_install(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    import builtins
-
-    real = builtins.__import__
-
-    def without(name: str, *rest: object, **more: object) -> object:
-        if name.startswith("OCP"):
-            raise ImportError(name)
-        return real(name, *rest, **more)  # type: ignore[arg-type]
-
-    monkeypatch.setattr(builtins, "__import__", without)
+    monkeypatch.setattr(apart, "find_spec", lambda _name: None)
     (tmp_path / "ship.step").write_text("ISO-10303-21;")
     with pytest.raises(InputError, match=r"pip install 'hpsop\[cad\]'"):
         read_table(tmp_path / "ship.step", OPTIONS)

@@ -7,6 +7,7 @@ import signal
 import subprocess
 import sys
 import zipfile
+from importlib.util import find_spec
 from pathlib import Path
 
 from hpsop_core.errors import InputError
@@ -33,9 +34,14 @@ def read_apart(path: Path) -> LooseTriangles:
         path: of a regular file; its ending tells the reader.
 
     Raises:
-        InputError: it cannot be read, or its reader died or did not end over it.
+        InputError: the reader is not installed, the file cannot be read, or the reader died or did not end over it.
     """
     kind = path.suffix[1:].upper()
+    if kind != "3DM" and find_spec("OCP") is None:
+        raise InputError(
+            f"{path.name}: reading STEP and IGES needs Open CASCADE; install it by: python -m pip install 'hpsop[cad]' "
+            "(or save the hull as STL, OBJ or 3dm)"
+        )
     seconds = round(_SECONDS + _SECONDS_PER_MEGABYTE * path.stat().st_size / 1e6)
     command, environment = own_python("hpsop_core.geometry.foreign.child")
     try:

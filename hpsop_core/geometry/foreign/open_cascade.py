@@ -20,19 +20,14 @@ def read_step_or_iges(path: Path) -> LooseTriangles:
     """The faces of a STEP or IGES file as triangles, in millimetres (Open CASCADE converts what the file states).
 
     Raises:
-        InputError: the extra is not installed, the file cannot be read or holds no faces.
+        InputError: the file cannot be read or holds no faces.
     """
-    try:
-        from OCP.BRepMesh import BRepMesh_IncrementalMesh
-        from OCP.IFSelect import IFSelect_RetDone
-        from OCP.IGESControl import IGESControl_Reader
-        from OCP.Message import Message
-        from OCP.STEPControl import STEPControl_Reader
-    except ImportError as problem:
-        raise InputError(
-            f"{path.name}: reading STEP and IGES needs Open CASCADE; install it by: python -m pip install 'hpsop[cad]' "
-            "(or save the hull as STL, OBJ or 3dm)"
-        ) from problem
+    from OCP.BRepMesh import BRepMesh_IncrementalMesh
+    from OCP.IFSelect import IFSelect_RetDone
+    from OCP.IGESControl import IGESControl_Reader
+    from OCP.Message import Message
+    from OCP.STEPControl import STEPControl_Reader
+
     # The library reports to standard output, which belongs to the command's own document.
     messenger = Message.DefaultMessenger_s()
     for printer in list(messenger.Printers()):
