@@ -392,7 +392,9 @@ class Hull:
         """The design waterline, port side, stern to stem: (n, 2) of x and y in m; n about count, y = 0 at both ends."""
         pieces: list[Array] = []
         draft = self.parent.draft
-        names = [n for n, s in self.parent.underwater.items() if np.all(s.control_points[:, -1, 2] == draft)]
+        # up to the rounding of a fit
+        at_top = {n: np.abs(s.control_points[:, -1, 2] - draft) for n, s in self.parent.underwater.items()}
+        names = [n for n, away in at_top.items() if np.all(away < 1e-9 * draft)]
         for name in sorted(names, key=lambda n: self.parent.extent(n)[0]):
             u = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, max(3, count // len(names))))
             points = self.patch_points(name, u, np.array([1.0]))[:, 0, :2]
