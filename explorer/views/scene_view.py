@@ -67,7 +67,7 @@ class SceneView:
         self._framed_for = 0.0
         self._told, self._docked = 0.0, False
         self._abeam = 0.0
-        self._hidden_for_backs = False
+        self._hidden_for_backs: bool | None = None
         self._made_room, self._keeps_panels = False, False
         self._spinning = threading.Event()
         self._dark: bool | None = None
@@ -197,10 +197,14 @@ class SceneView:
     def _camera(self, event: PageEvent) -> None:
         if event.arg in PRESETS:
             options = self._session.options
+            if self._hidden_for_backs is None:
+                # the first press after a reload: what stands there was our doing before it
+                self._hidden_for_backs = options.camera == "backs" and not options.hull
+                self._made_room = options.camera in LONG_VIEWS and options.wide
             hull = options.hull
             if event.arg == "backs":
                 # they look forward, at the hull
-                hull, self._hidden_for_backs = False, hull
+                hull, self._hidden_for_backs = False, hull or self._hidden_for_backs
             elif self._hidden_for_backs:
                 hull, self._hidden_for_backs = True, False
             self._session.set_options(camera=event.arg, hull=hull, wide=self._wide(event.arg))
