@@ -37,7 +37,6 @@ from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.events import RunEvent
 from hpsop_core.runs.lock import is_being_written
 from hpsop_core.runs.reader import RunReader, open_run
-from hpsop_core.runs.records import comparison_errors
 from hpsop_core.runs.refinement import keep_errors
 from hpsop_core.runs.store import RunStore
 
@@ -378,7 +377,7 @@ class RunKeeper:
         if not generations:
             return {}
         # Read before, so nothing is opened here.
-        known = {record.id: comparison_errors(record.evaluation) for record in reader.designs(generations[-1].front)}
+        known = {record.id: record.evaluation.comparison_errors for record in reader.designs(generations[-1].front)}
         return {number: widths for number, widths in known.items() if widths}
 
     def _read_new(self, reader: RunReader) -> None:

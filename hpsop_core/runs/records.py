@@ -114,7 +114,7 @@ def front_families(records: Sequence[DesignRecord]) -> tuple[tuple[int, ...], st
         return (0,) * len(records), ""
     points = np.array([[record.evaluation.objectives["f1"], record.evaluation.objectives["f2"]] for record in known])
     levels = [record.evaluation.level for record in known]
-    widths = half_widths(levels, points, [comparison_errors(record.evaluation) for record in known])
+    widths = half_widths(levels, points, [record.evaluation.comparison_errors for record in known])
     named = {record.id: int(family) for record, family in zip(known, families(points, widths), strict=True)}
     return tuple(named.get(record.id, 0) for record in records), narrow(points, widths)
 
@@ -133,8 +133,6 @@ ERROR_FIELDS = ("errors", "comparison_errors", "error_terms")
 ERRORS_KEY = "error_widths"
 """Where the run file's table ``run`` has these fields of its refined designs, by id."""
 
-_EARLIER_KEY = "errors"  # earlier versions kept the first field alone, without domain, propeller and inputs in it
-
 
 def known_errors(values: Mapping[str, str]) -> dict[str, dict[str, Any]]:
     """The error fields by the design's id, as text.
@@ -142,21 +140,8 @@ def known_errors(values: Mapping[str, str]) -> dict[str, dict[str, Any]]:
     Args:
         values: of the run file's table ``run``.
     """
-    earlier = json.loads(values.get(_EARLIER_KEY, "{}"))
-    found = {number: {"errors": widths} for number, widths in earlier.items()}
-    found |= json.loads(values.get(ERRORS_KEY, "{}"))
+    found: dict[str, dict[str, Any]] = json.loads(values.get(ERRORS_KEY, "{}"))
     return found
-
-
-def comparison_errors(evaluation: Evaluation) -> Mapping[str, float]:
-    """An evaluation's own errors in a comparison, as fractions; those of files of before there were such: of f1, f2."""
-    if evaluation.comparison_errors or not evaluation.ok:
-        return evaluation.comparison_errors
-    return {
-        name: evaluation.errors[name] / abs(value)
-        for name, value in evaluation.objectives.items()
-        if value and name in evaluation.errors
-    }
 
 
 def json_text(value: Any) -> str:
