@@ -44,9 +44,10 @@ def main() -> None:
             file = shipped_calibration.file_name(case, kind)
             assert file is not None, "a shipped case has a shipped hull"
             kept.add(file)
-            text = json.dumps({"kind": kind, "first_case": name, "content": content})
-            if not (FOLDER / file).exists() or json.loads((FOLDER / file).read_text())["content"] != content:
-                (FOLDER / file).write_text(text + "\n", encoding="utf-8")
+            document = {"kind": kind, "first_case": name, "bounds": case.bounds.as_dict(), "content": content}
+            text = json.dumps(document) + "\n"
+            if not (FOLDER / file).exists() or (FOLDER / file).read_text(encoding="utf-8") != text:
+                (FOLDER / file).write_text(text, encoding="utf-8")
             print(f"{name}: {file}")
     for path in FOLDER.glob("*.json"):
         if path.name not in kept:

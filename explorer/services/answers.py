@@ -6,16 +6,19 @@ is kept in small caches that all browsers share; memory stays flat however many 
 
 from __future__ import annotations
 
+from collections.abc import Callable
+
 from explorer.services.remembered import Remembered
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.evaluation.curves import DesignCurves, HullLines, hull_lines, resistance_points, thrust_curves
 from hpsop_core.evaluation.errors import evaluate_with_errors
 from hpsop_core.evaluation.evaluate import evaluate
-from hpsop_core.evaluation.levels import TRUTH
+from hpsop_core.evaluation.levels import FAST, TRUTH
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.shapes import design_hull
+from hpsop_core.evaluation.shipped_calibration import LEARNT, shipped
 from hpsop_core.geometry.hull.lines import HullLine, plan_lines
 
 # Charts end soon after the fastest condition. Level 1 follows every hump of the wave resistance; one speed of level 2
@@ -37,11 +40,34 @@ class Answers:
 
     def reference(self, case: Case, level: int) -> Reference:
         """The initial design's numbers at a level (at level 2, or with calibration by it, this takes a second)."""
-        return self._references.get((case, level), lambda: reference_for(case, level))
+        return self._references.get(self._standing(case, level), lambda: self._compute_reference(case, level))
+
+    def take(self, case: Case, level: int, reference: Callable[[], Reference | None]) -> None:
+        """Answer with a run's own reference from now on, where it has one."""
+        if self._references.peek((case, level)) is None:
+            own = reference()
+            if own is not None:
+                self._references.get((case, level), lambda: own)
+
+    def _standing(self, case: Case, level: int) -> tuple[object, ...]:
+        """Under what a case's reference is remembered: (case, level), or as a makeshift until a run has learnt."""
+        known = self._references.peek((case, level)) is not None
+        return (case, level) if known or not self._is_unlearnt(case, level) else (case, level, "one factor")
+
+    def _is_unlearnt(self, case: Case, level: int) -> bool:
+        learns = level == FAST.number and case.constants.wave_calibration == "learnt"
+        return learns and shipped(case, LEARNT) is None
+
+    def _compute_reference(self, case: Case, level: int) -> Reference:
+        if self._is_unlearnt(case, level):
+            # A run learns when it begins. Settings that are being edited cannot wait for dozens of hulls at every
+            # change; the initial design has its level-2 value either way.
+            case = case.replaced("constants", wave_calibration="level2")
+        return reference_for(case, level)
 
     def evaluate(self, case: Case, variables: DesignVariables, level: int) -> Evaluation:
         """A design's evaluation."""
-        key = (case, level, variables.key())
+        key = (*self._standing(case, level), variables.key())
         return self._evaluations.get(key, lambda: evaluate(case, variables, level, self.reference(case, level)))
 
     def refined(self, case: Case, variables: DesignVariables) -> Evaluation:

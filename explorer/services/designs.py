@@ -37,6 +37,9 @@ class DesignSource(Protocol):
     def evaluation(self, design_id: int) -> Evaluation | None:
         """A design's numbers."""
 
+    def reference(self, level: int) -> Reference | None:
+        """What normalises at a level."""
+
     def initial(self, level: int) -> Evaluation | None:
         """The initial design's at a level."""
 
@@ -103,6 +106,7 @@ class Designs:
     def whatif(self, variables: DesignVariables, level: int = 1) -> Shown:
         """A design of the user's own making, evaluated now."""
         picture = self._display.picture
+        self._take_run(level)
         evaluation = self._answers.evaluate(picture.case, variables, level)
         return self.with_errors(Shown("What-if", evaluation, kind="whatif", opening=picture.opening))
 
@@ -119,6 +123,7 @@ class Designs:
 
     def refine(self, variables: DesignVariables) -> Evaluation:
         """A design at level 2 with its own errors; a few seconds, then remembered."""
+        self._take_run(TRUTH.number)
         return self._answers.refined(self.case, variables)
 
     def again(self, saved: object) -> Shown | None:
@@ -137,11 +142,19 @@ class Designs:
 
     def reference(self, level: int) -> Reference:
         """What normalises at a level."""
+        self._take_run(level)
         return self._answers.reference(self.case, level)
+
+    def _take_run(self, level: int) -> None:
+        """What normalises is the run's own, where it has it: it may have taken dozens of hulls to find."""
+        picture, source = self._display.picture, self._source
+        if source is not None and source.opening == picture.opening:
+            self._answers.take(picture.case, level, lambda: source.reference(level))
 
     # ---- curves and lines ------------------------------------------------------------------------------------------
     def curves(self, evaluation: Evaluation) -> DesignCurves:
         """Resistance and thrust against Froude number."""
+        self._take_run(evaluation.level)
         return self._answers.curves(self.case, evaluation)
 
     def known_curves(self, evaluation: Evaluation) -> DesignCurves | None:

@@ -31,6 +31,7 @@ from explorer.state.run_picture import (
 )
 from hpsop_core.case.case import Case
 from hpsop_core.errors import HpsopError, InputError
+from hpsop_core.evaluation.reference import Reference
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.quantities import Quantity, all_quantities, condition_names, variable_quantities
 from hpsop_core.runs.controller import RunController
@@ -297,6 +298,16 @@ class RunKeeper:
             return reader.designs([design_id])[0].evaluation
         except HpsopError:
             return None
+
+    def reference(self, level: int) -> Reference | None:
+        """What normalises at a level, or None while the run does not have it, or not as this version does."""
+        reader = self._ensure_reader()
+        if reader is None:
+            return None
+        with contextlib.suppress(HpsopError, KeyError, TypeError, ValueError):
+            stored = reader.reference(level)
+            return None if stored is None else Reference.from_dict(stored)
+        return None
 
     def initial(self, level: int) -> Evaluation | None:
         """The initial design's numbers at a level, or None while the run does not have them."""

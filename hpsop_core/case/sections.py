@@ -286,6 +286,9 @@ class ConstantsSection:
         "level 1's wave resistance: scaled so that the initial design has its level-2 or the stated value; learnt: "
         "each form by a factor of its own, from a few dozen hulls solved at level 2; or as it is",
     )
+    wave_calibration_hulls: int = integer(
+        32, 8, 512, "hulls of the space solved at level 2 for wave_calibration = learnt, a third of a second each"
+    )
     stated_wave_coefficients: tuple[float, ...] = numbers(
         (), 0.0, 0.02, "the initial design's wave coefficients, one a condition, for wave_calibration = stated"
     )

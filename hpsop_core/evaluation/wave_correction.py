@@ -7,6 +7,7 @@ ranking of forms of other fullness wrong. The logarithm of the factor is regress
 
 from __future__ import annotations
 
+import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
 from functools import lru_cache
@@ -23,10 +24,7 @@ from hpsop_core.evaluation.levels import FAST, TRUTH
 from hpsop_core.evaluation.surface import hull_inputs
 from hpsop_core.geometry.hull.hull import Hull
 
-HULLS = 32
-"""Hulls to learn from: 24 leave 0.3 % in the total resistance of fresh forms, 36 leave 0.2 %."""
-
-_TRIED = 512  # designs of the space that are looked at for as many whose form carries what is asked
+_TRIED = 16  # designs of the space that are looked at for each whose form carries what is asked
 _BEYOND = 0.2  # of the logarithm: never further beyond what was learnt
 
 Rows: TypeAlias = tuple[tuple[float, ...], ...]
@@ -86,13 +84,15 @@ def learn_correction(case: Case, displaced_volume: float, speeds: Sequence[float
 
     space = case.bounds
     lower, upper = space.relaxed_lower, space.relaxed_upper
-    points = qmc.Sobol(max(1, len(space.free)), scramble=False).random(_TRIED)[:, : len(space.free)]
+    hulls = case.constants.wave_calibration_hulls
+    tried = 2 ** math.ceil(math.log2(_TRIED * hulls))
+    points = qmc.Sobol(max(1, len(space.free)), scramble=False).random(tried)[:, : len(space.free)]
     designs = [case.initial.variables, *(space.decode(lower + point * (upper - lower)) for point in points)]
     conditions = len(case.froude_numbers)
     inputs: list[list[tuple[float, ...]]] = [[] for _ in range(conditions)]
     logarithms: list[list[float]] = [[] for _ in range(conditions)]
     for design in dict.fromkeys(designs):
-        if len(logarithms[0]) > HULLS:
+        if len(logarithms[0]) > hulls:
             break
         key = hull_variables(case.hull, design, displaced_volume)
         try:
@@ -109,7 +109,7 @@ def learn_correction(case: Case, displaced_volume: float, speeds: Sequence[float
         for place, (froude, ratio) in enumerate(zip(froude_numbers, ratios, strict=True)):
             inputs[place].append(tuple(map(float, hull_inputs(hull, design, froude))))
             logarithms[place].append(float(np.log(ratio)))
-    if len(logarithms[0]) <= HULLS // 2:
+    if len(logarithms[0]) <= hulls // 2:
         raise SolverFailure(
             "wave_calibration",
             f"only {len(logarithms[0])} hulls of the space can be solved to learn from; set wave_calibration = level2",

@@ -79,6 +79,7 @@ ELSEWHERE = {
         *(f"constraints.{name}" for name in ("cavitation_conditions", "cavitation_criterion", "least_tip_clearance")),
         *(f"constraints.{name}" for name in ("greatest_length", "greatest_breadth", "back_cavitation_limit")),
     },
+    "tests/invariance/test_wave_correction.py": {"constants.wave_calibration_hulls"},
     "tests/invariance/test_final_errors.py": {
         "constants.form_factor_uncertainty",
         "constants.wake_fraction_uncertainty",

@@ -10,8 +10,10 @@ from scipy.stats import spearmanr
 
 from hpsop_core.case.case import load_case
 from hpsop_core.case.variables import DesignVariables
+from hpsop_core.evaluation import wave_correction
 from hpsop_core.evaluation.curves import resistance_curve
 from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.levels import WaveAnswer
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Ok
 from tests.two_speeds import TWO_SPEEDS
@@ -72,3 +74,14 @@ def test_curves_meet_the_conditions(reference: Reference) -> None:
         resistance_curve(CASE, design, 1, froude_numbers, reference), result.conditions, strict=True
     ):
         assert point.total_resistance == condition.total_resistance
+
+
+def test_it_learns_on_as_many_hulls_as_the_case_says(monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(
+        wave_correction, "wave_answers", lambda key, level, numbers: (WaveAnswer(1e-3 * level),) * len(numbers)
+    )
+    case = CASE.replaced("constants", wave_calibration_hulls=9)
+    learnt = wave_correction.learn_correction(case, 150000.0, case.speeds)
+    # and the initial one
+    assert [len(rows) for rows in learnt.inputs] == [len(row) for row in learnt.logarithms] == [10, 10]
+    assert learnt.logarithms[0] == pytest.approx([np.log(2.0)] * 10)

@@ -78,9 +78,27 @@ def test_limits_and_weights_do_not_matter(monkeypatch: pytest.MonkeyPatch) -> No
     assert not _level_2_asked(changed, monkeypatch)
 
 
-def test_what_was_learnt_belongs_to_its_bounds() -> None:
+def test_what_was_learnt_serves_the_spaces_within_its_own() -> None:
     case = load_case("dtc-p4119")
-    narrower = case.with_bounds({"draft": (13.0, 16.0)})
-    kinds = (shipped_calibration.INITIAL, shipped_calibration.LEARNT)
-    first, second = ([shipped_calibration.file_name(one, kind) for kind in kinds] for one in (case, narrower))
-    assert first[0] == second[0] and first[1] != second[1]
+    kept = shipped_calibration.shipped(case, shipped_calibration.LEARNT)
+    assert kept is not None
+    narrower, wider = case.with_bounds({"draft": (13.0, 16.0)}), case.with_bounds({"draft": (13.0, 17.5)})
+    assert shipped_calibration.shipped(narrower, shipped_calibration.LEARNT) == kept
+    assert shipped_calibration.shipped(wider, shipped_calibration.LEARNT) is None
+    other = case.replaced("constants", wave_calibration_hulls=24)
+    assert shipped_calibration.shipped(other, shipped_calibration.LEARNT) is None
+
+
+def test_a_wider_case_learns_itself(monkeypatch: pytest.MonkeyPatch) -> None:
+    asked = []
+
+    def learn(case: Case, *_rest: object) -> None:
+        asked.append(case)
+
+    monkeypatch.setattr(physics, "learn_correction", learn)
+    case = load_case("dtc-p4119")
+    physics.basis_for(case, 1)
+    assert not asked
+    wider = case.with_bounds({"draft": (13.0, 17.5)})
+    physics.basis_for(wider, 1)
+    assert asked == [wider]
