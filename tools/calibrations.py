@@ -6,6 +6,7 @@ run when a shipped case, a parent hull or a solver of waves has changed: a test 
 
 from __future__ import annotations
 
+import argparse
 import json
 from dataclasses import asdict
 from pathlib import Path
@@ -36,6 +37,7 @@ def computed(case: Case) -> dict[str, Any]:
 
 def main() -> None:
     """Write them."""
+    argparse.ArgumentParser(prog="python -m tools.calibrations", description=__doc__).parse_args()
     FOLDER.mkdir(exist_ok=True)
     kept = set()
     for name in SHIPPED_CASES:

@@ -5,6 +5,7 @@
 
 from __future__ import annotations
 
+import argparse
 import math
 import sys
 
@@ -71,4 +72,5 @@ def _limits(rule: FieldRule) -> str:
 
 
 if __name__ == "__main__":
+    argparse.ArgumentParser(prog="python -m tools.case_reference", description=__doc__).parse_args()
     sys.stdout.write(case_reference())

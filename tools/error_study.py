@@ -7,8 +7,8 @@ objectives in a comparison.
 
 from __future__ import annotations
 
+import argparse
 import itertools
-import sys
 
 import numpy as np
 from scipy.stats import qmc
@@ -37,8 +37,11 @@ def solved(case: Case, count: int) -> list[Ok]:
 
 def main() -> None:
     """Print the table."""
-    case = load_case(sys.argv[1] if len(sys.argv) > 1 else "dtc-p4119")
-    designs = solved(case, int(sys.argv[2]) if len(sys.argv) > 2 else 16)
+    parser = argparse.ArgumentParser(prog="python -m tools.error_study", description=__doc__)
+    parser.add_argument("case", nargs="?", default="dtc-p4119", help="a shipped case's name or a case file")
+    parser.add_argument("count", nargs="?", type=int, default=16, help="of designs")
+    asked = parser.parse_args()
+    designs = solved(load_case(asked.case), asked.count)
     rows = np.array(
         [
             [

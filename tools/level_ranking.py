@@ -5,6 +5,8 @@ Two samples of the resistance objective on the DTC: dimensions at one fullness, 
 
 from __future__ import annotations
 
+import argparse
+
 import numpy as np
 from scipy.stats import qmc, spearmanr
 
@@ -53,6 +55,7 @@ def both_levels(case: Case, designs: list[DesignVariables]) -> Array:
 
 def main() -> None:
     """Print the rank correlations."""
+    argparse.ArgumentParser(prog="python -m tools.level_ranking", description=__doc__).parse_args()
     case = load_case("dtc-p4119-power")
     for name, with_displacement in (("dimensions at one fullness", False), ("dimensions and displacement", True)):
         table = both_levels(case, sampled(case, with_displacement, 64))

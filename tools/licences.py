@@ -6,6 +6,7 @@ when the page no longer names every dependency.
 
 from __future__ import annotations
 
+import argparse
 import importlib.metadata
 import re
 import sys
@@ -88,7 +89,7 @@ def page() -> str:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns the exit status."""
-    del argv
+    argparse.ArgumentParser(prog="python -m tools.licences", description=__doc__).parse_args(argv)
     PAGE.write_text(page(), encoding="utf-8")
     sys.stdout.write(f"{PAGE.relative_to(ROOT)} written\n")
     return 0

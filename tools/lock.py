@@ -7,6 +7,7 @@ list fits.
 
 from __future__ import annotations
 
+import argparse
 import json
 import subprocess
 import sys
@@ -55,7 +56,7 @@ def write(path: Path, pins: dict[str, tuple[str, str]], what: str) -> None:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns the exit status."""
-    del argv
+    argparse.ArgumentParser(prog="python -m tools.lock", description=__doc__).parse_args(argv)
     # setuptools builds hpsop itself: from the list too, and not from wherever a build would fetch it
     write(FOLDER / f"{name_here()}.txt", resolved([".", "setuptools>=77"]), "what hpsop needs")
     write(FOLDER / f"{name_here()}-tests.txt", resolved([".[test]", "setuptools>=77"]), "what hpsop and its tests need")

@@ -143,6 +143,7 @@ class BatchEvaluator:
                     paused(False)
                     continue
                 try:
+                    self._workers.look()
                     if not self._control.paused:
                         self._submit()
                     self._collect(finished)

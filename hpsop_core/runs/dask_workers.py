@@ -62,7 +62,7 @@ class DaskWorkers:
         try:
             self._client = client(target, timeout=5, set_as_default=False)
             self._client.wait_for_workers(1, timeout=seconds)
-            self._look(list(self._client.nthreads()))
+            self._count()
         except (OSError, TimeoutError, ValueError) as error:
             self._leave()
             raise WorkersUnavailableError(
@@ -73,7 +73,7 @@ class DaskWorkers:
             self._leave()
             raise
 
-    def _look(self, workers: list[str]) -> None:
+    def _admit(self, workers: list[str]) -> None:
         """Ask new workers for their versions; evaluations go to those alone that have been asked.
 
         Raises:
@@ -111,20 +111,32 @@ class DaskWorkers:
 
     @property
     def slots(self) -> int:
-        """Threads of all workers; they may come and go."""
-        now = time.monotonic()
-        if now - self._asked > _CLUSTER_INTERVAL:
-            self._asked = now
-            with self._answering():
-                threads: dict[str, int] = self._client.nthreads()
-                self._look(list(threads))
-                self._threads = max(1, sum(count for worker, count in threads.items() if worker in self._versions))
+        """Threads of all workers, as last seen; they may come and go."""
         return self._threads
+
+    def look(self) -> None:
+        """Ask which workers there are, every few seconds.
+
+        Raises:
+            WorkersLostError: the scheduler does not answer. This alone tells of it while results are being fetched: a
+                future whose result was under way when the scheduler died is never done.
+        """
+        if self._client is None or self._client.status != "running":
+            raise self._lost()
+        if time.monotonic() - self._asked > _CLUSTER_INTERVAL:
+            with self._answering():
+                self._count()
+
+    def _count(self) -> None:
+        self._asked = time.monotonic()
+        threads: dict[str, int] = self._client.nthreads()
+        self._admit(list(threads))
+        self._threads = max(1, sum(count for worker, count in threads.items() if worker in self._versions))
 
     @property
     def description(self) -> str:
         """For people."""
-        return f"Dask at {self._address}, {self.slots} threads"
+        return f"Dask at {self._address}, {self._threads} threads"
 
     @property
     def blamable(self) -> bool:
@@ -174,7 +186,7 @@ class DaskWorkers:
             with contextlib.suppress(Exception):
                 self._client.restart(timeout=30)
                 self._client.wait_for_workers(1, timeout=30)
-                self._look(list(self._client.nthreads()))
+                self._count()
                 return
         self._leave()
         try:

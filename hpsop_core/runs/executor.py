@@ -65,6 +65,9 @@ class LocalWorkers:
         """The number of processes."""
         return self._count
 
+    def look(self) -> None:
+        """Nothing: the death of a process is told by the calls under way."""
+
     @property
     def description(self) -> str:
         """For people."""

@@ -25,6 +25,14 @@ class Workers(Protocol):
     def slots(self) -> int:
         """Evaluations that really run side by side; no more are ever submitted, so each starts at once."""
 
+    def look(self) -> None:
+        """See whether they are still there, and how many; called all the while that evaluations are under way.
+
+        Raises:
+            WorkersLostError: they cannot be reached.
+            WorkersUnavailableError: one has joined that cannot be used.
+        """
+
     @property
     def description(self) -> str:
         """For people."""

@@ -200,7 +200,7 @@ def test_an_interrupt_pauses_cleanly_and_says_how_to_go_on(folder: Path, tmp_pat
 def test_a_terminal_that_is_closed_ends_the_run_in_good_order(tmp_path: Path) -> None:
     """The kernel tells the whole session by SIGHUP, and nothing can be printed any more."""
     words = command(
-        "optimize", "dtc-p4119-paper", "--run", "hup.hpsop", "--generations", "60", "--level1-generations", "60"
+        "optimize", "dtc-p4119-paper", "--run", "hup.hpsop", "--generations", "5000", "--level1-generations", "5000"
     )
     process, terminal = pty.fork()
     if process == 0:
@@ -208,7 +208,7 @@ def test_a_terminal_that_is_closed_ends_the_run_in_good_order(tmp_path: Path) ->
         os.environ["PYTHONPATH"] = str(Path(__file__).resolve().parents[2])
         os.execv(words[0], [*words, "--population", "12", "--workers", "2"])
     seen = b""
-    while b"generation 2/60" not in seen:
+    while b"generation 2/5000" not in seen:
         seen += os.read(terminal, 4096)
     os.close(terminal)
     _, status = os.waitpid(process, 0)

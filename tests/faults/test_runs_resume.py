@@ -155,8 +155,8 @@ def test_fifty_kills_over_real_runs_of_both_levels(tmp_path: Path) -> None:
     _real_runs(tmp_path, runs=5, kills=10)
 
 
-def test_eight_kills_over_a_real_run_of_both_levels(tmp_path: Path) -> None:
-    _real_runs(tmp_path, runs=1, kills=8)
+def test_four_kills_over_a_real_run_of_both_levels(tmp_path: Path) -> None:
+    _real_runs(tmp_path, runs=1, kills=4)
 
 
 def _real_runs(tmp_path: Path, runs: int, kills: int) -> None:

@@ -110,14 +110,13 @@ def test_the_sheet_of_waves_has_no_gap_and_looks_up(hull: Hull, fields: tuple[Wa
 def test_both_levels_show_the_same_waves_astern_and_abeam(hull: Hull, fields: tuple[WaveField, WaveField]):
     x = np.linspace(-0.6, 0.95, 200) * hull.length
     for place in (0.15, 0.25, 0.35):
-        cuts = [
-            griddata(
-                np.column_stack([field.x.ravel(), field.y.ravel()]),
-                field.elevation.ravel(),
-                (x, np.full_like(x, place * hull.length)),
-            )
-            for field in fields
-        ]
+        cuts = []
+        for field in fields:
+            every = max(1, len(field.x) // 80)  # a dozen points a wave are plenty
+            fx, fy, elevation = field.x[::every], field.y[::every], field.elevation[::every]
+            near = abs(fy - place * hull.length) < 0.15 * hull.length
+            points = np.column_stack([fx[near], fy[near]])
+            cuts.append(griddata(points, elevation[near], (x, np.full_like(x, place * hull.length))))
         known = np.isfinite(cuts[0]) & np.isfinite(cuts[1])
         # .82 to .86 when this was written; crests in the wrong place by an eighth of a wave would give .7 less of it
         assert np.corrcoef(cuts[0][known], cuts[1][known])[0, 1] > 0.75

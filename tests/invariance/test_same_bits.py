@@ -39,18 +39,18 @@ for ratio in (0.97, 1.03):
         print(repr(dict(evaluation.as_dict(), elapsed=0.0)))
         print(resistance_curve(case, design, level, (0.2, 0.24)))
 """
+PROGRAM = RANKINE + EVERYTHING
 VARIABLES = ("OPENBLAS_NUM_THREADS", "OMP_NUM_THREADS")
 
 
-@pytest.mark.parametrize("program", [RANKINE, EVERYTHING], ids=["rankine", "everything"])
-def test_same_bits_in_other_processes_and_with_other_thread_settings(program: str) -> None:
+def test_same_bits_in_other_processes_and_with_other_thread_settings() -> None:
     answers = {}
-    for threads in ("1", "2", "3", None):
+    for threads in ("1", "3", None):
         environment = {key: value for key, value in os.environ.items() if key not in VARIABLES}
         if threads is not None:
             environment |= dict.fromkeys(VARIABLES, threads)
         run = subprocess.run(
-            [sys.executable, "-c", program], env=environment, capture_output=True, text=True, check=True, timeout=300
+            [sys.executable, "-c", PROGRAM], env=environment, capture_output=True, text=True, check=True, timeout=300
         )
         assert run.stdout
         answers[threads] = run.stdout
