@@ -93,7 +93,7 @@ class Explorer:
         worker = LatestWorker("shared")
         browsers = remembered(self.folder).browsers
         self.state = AppState(draft, worker, Hub(worker), RunPicture("", case), memory=browsers)
-        self.services = open_services(self.state, RunLibrary(self.folder), workers)
+        self.services = open_services(self.state, RunLibrary(self.folder, demonstration()), workers)
         self.trouble = ""
         if run is not None:
             self._open(run, read_only, run_asked)

@@ -7,12 +7,14 @@ from typing import Any
 
 import viser
 
+from explorer.scene.camera import PRESETS
 from explorer.server.bridge import Bridge, PageEvent
 from explorer.server.guard import guard
 from explorer.server.html_slot import Slot
 from explorer.server.uploads import Uploads
 from explorer.services.services import Services
 from explorer.state.app_state import AppState
+from explorer.state.link import Link, read_link
 from explorer.state.session import LEFT_DOCK, Session
 from explorer.views.chart_tabs import chart_tabs
 from explorer.views.charts_view import ChartsView
@@ -21,7 +23,7 @@ from explorer.views.design_view import DesignView
 from explorer.views.help_view import HelpView
 from explorer.views.help_words import purpose
 from explorer.views.library_view import LibraryView
-from explorer.views.on_display import select_first
+from explorer.views.on_display import follow_best, select_first
 from explorer.views.overlay_view import OverlayView
 from explorer.views.parallel_view import ParallelBrushes
 from explorer.views.pareto.chart import ParetoChart
@@ -30,6 +32,7 @@ from explorer.views.pareto.scrubber import Scrubber
 from explorer.views.run_control import RunControl
 from explorer.views.run_view import RunView
 from explorer.views.saving import Saving
+from explorer.views.scatter_view import ScatterView
 from explorer.views.scene_view import SceneView
 from explorer.views.screenshot_view import ScreenshotView
 from explorer.views.settings_view import SettingsView
@@ -106,12 +109,15 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
         for title, tab in tabs.items():
             with tab:
                 Slot(gui, purpose(title))
+        # a phone has one column, in which panels stand closed unless told otherwise
+        for panel in (top, bottom, unseen):
+            panel.expand()
         RunControl(session, services.runs)
         ParallelBrushes(session)
         with unseen_tab:
             Bridge(gui, session.gestures.receive)
             saving = Saving(session, gui, download)
-            ToolbarView(session, designs, gui, client)
+            ToolbarView(session, services, gui, client)
             helping = HelpView(session, gui)
             you = Slot(gui)
         with pareto:
@@ -122,7 +128,8 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
         with tabs["Design"]:
             DesignView(session, designs, services.refining, gui)
         with tabs["Charts"]:
-            ChartsView(session, designs, gui, chart_tabs(), saving)
+            scatter = ScatterView(session, designs, gui).tab()
+            ChartsView(session, designs, gui, chart_tabs(scatter), saving)
         with tabs["Table"]:
             TableView(session, designs, gui, download)
         with tabs["Compare"]:
@@ -148,6 +155,21 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
         session.remember()
         helping.welcome(seen=event.arg == "toured")
         theme()
+        link = read_link(event.link, PRESETS)
+        if link is not None:
+            session.app.worker.every(lambda: follow(link))
+
+    def follow(link: Link) -> None:
+        if link.run and link.run != session.picture.name:
+            try:
+                services.runs.open_named(link.run)
+            except HpsopError as error:
+                session.notify("The link's run is not shown", str(error), "yellow")
+                return
+            session.app.did(session, "opened another run by a link")
+        missing = session.follow_link(link, designs.linked)
+        if missing:
+            session.notify("Not all of the link is there", f"this run has no {', no '.join(missing)}", "yellow")
 
     def theme() -> None:
         gui.configure_theme(
@@ -186,4 +208,5 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
                 panel.expand()
 
     session.hub.on(("options",), docks)
+    session.hub.on(("run", "follow", "selection"), lambda: follow_best(session, designs))
     session.worker.latest("first selection", lambda: select_first(session, designs))

@@ -113,6 +113,13 @@ def _profile(name: str, scale: float) -> Callable[[Evaluation], float | None]:
     return get
 
 
+def _buoyancy_centre(evaluation: Evaluation) -> float | None:
+    if not evaluation.ok:
+        return None
+    hull = evaluation.hull
+    return 100.0 * (hull.longitudinal_centre_of_buoyancy / hull.length - 0.5)
+
+
 def _propeller(name: str) -> Callable[[Evaluation], float | None]:
     def get(evaluation: Evaluation) -> float | None:
         value = getattr(evaluation.propeller, name) if evaluation.ok else None
@@ -212,13 +219,13 @@ HULL: tuple[Quantity, ...] = (
     ),
     Quantity(
         "lcb",
-        "LCB forward of AP",
+        "LCB from midship, forward +",
         "LCB",
-        "m",
+        "% Lpp",
         2,
-        _hull("longitudinal_centre_of_buoyancy"),
+        _buoyancy_centre,
         "Hull",
-        formula="centre of ∇, from AP",
+        formula="centre of ∇, in parts of L_PP from its middle",
     ),
     Quantity(
         "booked_cb",

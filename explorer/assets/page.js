@@ -15,7 +15,7 @@
   // ---- the tab's title, and a server that is gone ------------------------------------------------------------------
   function title() {
     const run = document.querySelector("[data-run-name]");
-    const wanted = run && run.dataset.runName ? run.dataset.runName.replace(/\.hpsop$/, "") + " – hpsop" : "hpsop";
+    const wanted = run && run.dataset.runName ? (run.dataset.runTitle || run.dataset.runName).replace(/\.hpsop$/, "") + " – hpsop" : "hpsop";
     if (document.title !== wanted) document.title = wanted;
   }
   const gone = document.createElement("div");
@@ -106,7 +106,9 @@
   H.toured = () => { try { return window.localStorage.getItem("hpsop-toured") === "1"; } catch (e) { return true; } };
   H.connect = function (channelId) {
     if (H.channelId !== channelId) { H.channelId = channelId; H.outbox = []; }
-    H.send({ t: "hello", browser: H.browser, width: innerWidth, height: innerHeight, arg: H.toured() ? "toured" : "" });
+    // a link is followed once: from then on the page goes its own ways, also over a reload
+    H.send({ t: "hello", browser: H.browser, width: innerWidth, height: innerHeight, link: location.search.slice(0, 1500), arg: H.toured() ? "toured" : "" });
+    if (location.search) history.replaceState(null, "", location.pathname);
     place();
     title();
     // panels mount one after another
@@ -165,7 +167,9 @@
     H.active = svg ? svg.dataset.chart : null;
     if (!svg || event.button !== 0) return;
     const p = point(svg, event);
-    const mode = event.shiftKey && svg.dataset.box ? "box" : svg.dataset.drag || "none";
+    let mode = event.shiftKey && svg.dataset.box ? "box" : svg.dataset.drag || "none";
+    // the names of axes stand above them, and a drag there moves an axis (explorer/views/parallel_view.py)
+    if (mode === "brush" && p.fy > 1.06) mode = "move";
     drag = { number: ++drags, chart: svg.dataset.chart, mode, x: event.clientX, y: event.clientY, start: p, moved: false };
     if (mode !== "none") event.preventDefault();
   }, true);
@@ -182,10 +186,17 @@
         // knows better than a chart that may not have been redrawn yet.
         H.send({ t: "pan", chart: drag.chart, fx: p.fx - drag.start.fx, fy: p.fy - drag.start.fy, drag: drag.number, soft: 1 });
         hideTip();
-      } else if (drag.mode === "box" || drag.mode === "brush") {
+      } else if (drag.mode === "box" || drag.mode === "brush" || drag.mode === "move") {
         const wide = drag.mode === "brush";
         const half = 7;
         band.style.display = "block";
+        if (drag.mode === "move") {
+          band.style.left = Math.min(drag.x, event.clientX) + "px";
+          band.style.width = Math.abs(event.clientX - drag.x) + "px";
+          band.style.top = drag.y - half + "px";
+          band.style.height = 2 * half + "px";
+          return;
+        }
         band.style.left = (wide ? drag.x - half : Math.min(drag.x, event.clientX)) + "px";
         band.style.width = (wide ? 2 * half : Math.abs(event.clientX - drag.x)) + "px";
         band.style.top = Math.min(drag.y, event.clientY) + "px";
@@ -215,8 +226,8 @@
     if (!svg) return;
     const p = point(svg, event);
     if (done.moved && done.mode !== "none") {
-      if (done.mode === "box" || done.mode === "brush")
-        H.send({ t: done.mode, chart: done.chart, x0: done.start.x, y0: done.start.y, x1: p.x, y1: p.y, fx0: done.start.fx, fy0: done.start.fy, fx1: p.fx, fy1: p.fy });
+      if (done.mode === "box" || done.mode === "brush" || done.mode === "move")
+        H.send({ t: done.mode === "box" ? "box" : "brush", chart: done.chart, x0: done.start.x, y0: done.start.y, x1: p.x, y1: p.y, fx0: done.start.fx, fy0: done.start.fy, fx1: p.fx, fy1: p.fy });
     } else if (event.button === 0) {
       // The browser's own dblclick is lost when the first click redraws the chart under the pointer.
       const near = clicked && clicked.chart === done.chart && event.timeStamp - clicked.at < 350 &&
@@ -282,13 +293,38 @@
     H.send({ t: "key", key: event.key, chart: H.active || hovered || "" });
   }, true);
 
+  // ---- thumbs of the range sliders: viser's listen to the mouse alone; a key on one steps the box of its bound -------
+  function thumbs() {
+    const rows = document.querySelectorAll(".readout[data-variable]"), sliders = document.querySelectorAll(".multi-slider");
+    if (rows.length !== sliders.length) return;
+    sliders.forEach((slider, place) => {
+      const boxes = rows[place].querySelectorAll("input.bound");
+      slider.querySelectorAll(".multi-slider-thumb").forEach((thumb, side) => {
+        const box = boxes[side];
+        if (!box) return;
+        const told = { role: "slider", tabindex: "0", "data-bound": box.dataset.arg, "aria-label": box.getAttribute("aria-label"),
+          "aria-valuenow": box.value, "aria-valuetext": box.value };
+        for (const name in told) if (thumb.getAttribute(name) !== told[name]) thumb.setAttribute(name, told[name]);
+      });
+    });
+  }
+  const STEPS = { ArrowRight: 1, ArrowUp: 1, PageUp: 10, ArrowLeft: -1, ArrowDown: -1, PageDown: -10 };
+  listen(document, "keydown", (event) => {
+    const bound = event.target.dataset && event.target.dataset.bound, step = STEPS[event.key];
+    const box = bound && step && document.querySelector('input.bound[data-arg="' + bound + '"]');
+    if (!box) return;
+    event.preventDefault();
+    if (step > 0) box.stepUp(step); else box.stepDown(-step);
+    box.dispatchEvent(new Event("change", { bubbles: true }));
+  }, true);
+
   // ---- number boxes: one for each bound ---------------------------------------------------------------------------
   listen(document, "change", (event) => {
     const box = event.target;
     if (!box.dataset || !box.dataset.set) return;
     H.send({ t: "act", name: box.dataset.set, arg: box.dataset.arg + "=" + box.value });
     // one that was refused is not drawn anew: it goes back to what holds
-    setTimeout(() => { if (box.isConnected && box.value !== box.defaultValue) box.value = box.defaultValue; }, 1500);
+    setTimeout(() => { if (box.matches("input") && box.isConnected && box.value !== box.defaultValue) box.value = box.defaultValue; }, 1500);
     if (document.activeElement !== box) return;
     // the answer draws the box anew: who steps with the arrow keys goes on in it
     const again = setInterval(() => {
@@ -320,6 +356,127 @@
     tip.style.left = Math.max(4, box.left - w - 8) + "px";
     tip.style.top = Math.max(4, Math.min(y - h / 2, innerHeight - h - 4)) + "px";
   };
+
+  // ---- a link to what this page shows ------------------------------------------------------------------------------
+  const linked = document.createElement("div");
+  linked.className = "hpsop-link card";
+  linked.setAttribute("role", "dialog");
+  linked.setAttribute("aria-label", "a link to this page");
+  linked.style.display = "none";
+  document.body.appendChild(linked);
+  disposers.push(() => linked.remove());
+  H.link = function (marker) {
+    const source = marker.previousElementSibling;
+    marker.remove();
+    if (!source || !source.dataset || source.dataset.query === undefined) return;
+    const address = location.origin + location.pathname + "?" + source.dataset.query;
+    source.remove();
+    delete linked.dataset.copied;
+    linked.innerHTML = '<label>A link to what stands here, for who has the token: <input readonly aria-label="the link"></label> <button type="button" class="chip">close</button>';
+    const field = linked.querySelector("input");
+    field.value = address;
+    linked.style.display = "block";
+    field.focus();
+    field.select();
+    // pages that come without encryption from another machine have no clipboard of the new kind
+    if (navigator.clipboard) navigator.clipboard.writeText(address).then(() => { linked.dataset.copied = "1"; }, () => {});
+    else try { if (document.execCommand("copy")) linked.dataset.copied = "1"; } catch (e) { /* it stands there to be copied */ }
+    const shut = () => { linked.style.display = "none"; };
+    linked.querySelector("button").onclick = shut;
+    linked.onkeydown = (event) => { if (event.key === "Escape") shut(); };
+  };
+
+  // ---- values at the pointer: of the chart under it, and of every chart over the same quantity -----------------------
+  const crosses = [];
+  const reading = document.createElement("div");
+  reading.className = "hpsop-reading";
+  document.body.appendChild(reading);
+  disposers.push(() => { reading.remove(); crosses.forEach((cross) => cross.remove()); });
+  function unread() {
+    reading.style.display = "none";
+    crosses.forEach((cross) => { cross.style.display = "none"; });
+  }
+  const numbersOf = (svg) => {
+    if (svg.hpsopText !== svg.dataset.values) { svg.hpsopText = svg.dataset.values; svg.hpsopValues = JSON.parse(svg.hpsopText); }
+    return svg.hpsopValues;
+  };
+  const written = (value) => (Math.abs(value) >= 1e5 ? value.toFixed(0) : Number(value.toPrecision(4)).toString()).replace("-", "−");
+  // a line over x that never turns back is read between its points
+  function valueAt(series, x) {
+    const xs = series.x, ys = series.y;
+    let found = null;
+    for (let i = 1; i < xs.length; i++) {
+      if (xs[i - 1] === null || xs[i] === null || ys[i - 1] === null || ys[i] === null) continue;
+      if (xs[i] < xs[i - 1]) return undefined;
+      if (found === null && xs[i - 1] <= x && x <= xs[i])
+        found = ys[i - 1] + (xs[i] > xs[i - 1] ? (x - xs[i - 1]) / (xs[i] - xs[i - 1]) : 0) * (ys[i] - ys[i - 1]);
+    }
+    return found;
+  }
+  function line(parent, tag, text) {
+    const node = document.createElement(tag);
+    node.textContent = text;
+    parent.appendChild(node);
+    return node;
+  }
+  function read(svg, event) {
+    const p = point(svg, event), own = numbersOf(svg);
+    if (!p.inside) return unread();
+    reading.textContent = "";
+    line(reading, "b", own.x + ": " + written(p.x));
+    const linked = Array.from(document.querySelectorAll("svg[data-values]")).filter((other) =>
+      other === svg || (other.getBoundingClientRect().width > 0 && numbersOf(other).x === own.x));
+    let used = 0;
+    linked.forEach((other) => {
+      const values = numbersOf(other), box = other.getBoundingClientRect(), view = other.viewBox.baseVal;
+      const [px, py, pw, ph] = other.dataset.plot.split(",").map(Number);
+      const [x0, x1] = other.dataset.limits.split(",").map(Number);
+      const share = (p.x - x0) / (x1 - x0);
+      if (share < 0 || share > 1) return;
+      const all = values.series.map((series) => [series, valueAt(series, p.x)]);
+      // curves that turn back (sections, waterlines) have no one value over x: the place itself is what is read
+      if (all.some(([, value]) => value === undefined)) {
+        if (other === svg) line(reading, "div", values.y + ": " + written(p.y));
+        return;
+      }
+      if (!crosses[used]) {
+        crosses[used] = document.createElement("div");
+        crosses[used].className = "hpsop-cross";
+        document.body.appendChild(crosses[used]);
+      }
+      const cross = crosses[used++].style, scale = box.width / view.width;
+      cross.display = "block";
+      cross.left = box.left + (px + share * pw) * scale + "px";
+      cross.top = box.top + py * scale + "px";
+      cross.height = ph * scale + "px";
+      [false, true].forEach((second) => {
+        const found = all.filter(([series, value]) => value !== null && series.second === second);
+        if (!found.length) return;
+        line(reading, "div", second ? values.y2 : values.y).className = "soft";
+        const table = document.createElement("table");
+        table.className = "numbers";
+        found.forEach(([series, value]) => {
+          const row = document.createElement("tr");
+          line(row, "td", series.name);
+          line(row, "td", written(value));
+          table.appendChild(row);
+        });
+        reading.appendChild(table);
+      });
+    });
+    for (let i = used; i < crosses.length; i++) crosses[i].style.display = "none";
+    reading.style.display = "block";
+    const box = svg.getBoundingClientRect(), w = reading.offsetWidth, h = reading.offsetHeight;
+    // beside the chart where there is room, else beside the pointer
+    const left = box.left - w - 8;
+    reading.style.left = (left > 4 ? left : Math.max(4, Math.min(event.clientX + 16, innerWidth - w - 4))) + "px";
+    reading.style.top = Math.max(4, Math.min(event.clientY - h / 2, innerHeight - h - 4)) + "px";
+  }
+  listen(document, "pointermove", (event) => {
+    const svg = chartOf(event.target);
+    if (svg && svg.dataset.values && !drag) read(svg, event);
+    else if (reading.style.display !== "none") unread();
+  }, true);
 
   // ---- what scrolls sideways stays where it was when it is drawn again ---------------------------------------------
   const scrolled = {};
@@ -378,7 +535,7 @@
     frames[name].innerHTML = source.innerHTML;
     frames[name].style.display = source.innerHTML.trim() ? "block" : "none";
     place();
-    if (name === "tour") point();
+    if (name === "tour") outlined();
     // who opened the help with the keyboard goes on in it
     if (name === "help" && source.innerHTML.trim()) frames[name].querySelector("[tabindex]").focus();
   };
@@ -387,7 +544,7 @@
   outline.className = "hpsop-point";
   document.body.appendChild(outline);
   disposers.push(() => outline.remove());
-  function point() {
+  function outlined() {
     const card = frames.tour && frames.tour.querySelector("[data-point]");
     const wanted = card ? card.dataset.point : "";
     const node = wanted.startsWith("tab:")
@@ -426,7 +583,18 @@
     document.documentElement.style.setProperty("--hpsop-left", left + "px");
     document.documentElement.style.setProperty("--hpsop-right", innerWidth - right + "px");
   }
-  const ticker = setInterval(() => { place(); point(); title(); names(); }, 700);
+  // ---- a phone: the ship above, and below it one column with the chart first and the settings last ------------------
+  const small = matchMedia("(max-width: 36em)");
+  function column() {
+    document.documentElement.classList.toggle("hpsop-phone", small.matches);
+    if (!small.matches) return;
+    let node = document.querySelector("[data-run-status]");
+    while (node && node.parentElement && !node.parentElement.querySelector("svg[data-chart=pareto]")) node = node.parentElement;
+    if (!node || !node.parentElement) return;
+    node.classList.add("hpsop-last");
+    node.parentElement.classList.add("hpsop-column");
+  }
+  const ticker = setInterval(() => { place(); outlined(); title(); names(); column(); thumbs(); }, 700);
   disposers.push(() => clearInterval(ticker));
   let resizeTimer = null;
   listen(window, "resize", () => {

@@ -2,11 +2,12 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 import numpy as np
 from numpy.typing import NDArray
 
+from explorer.charts.colour_ramp import colour_of, finite_limits
 from explorer.state.run_picture import RunPicture
 from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.markup import Markup, fill, joined, symbol_svg
@@ -17,12 +18,27 @@ _TEXT = '<text x="{:.1f}" y="{:.1f}" text-anchor="middle" class="{}">{}</text>'
 _RESULTS = ("block_coefficient", "total_resistance_1", "open_water_efficiency_1", "delivered_power_1")
 
 
-def axes_of(picture: RunPicture) -> list[Quantity]:
-    """Free variables, a few results, and the objectives."""
+def axes_of(picture: RunPicture, order: Sequence[str] = ()) -> list[Quantity]:
+    """Free variables, a few results, and the objectives; those named in ``order`` (keys) first, as it says."""
     chosen = free_variables(picture.case)
     everything = {quantity.key: quantity for quantity in all_quantities(condition_names(picture.case))}
     chosen += [everything[key] for key in _RESULTS if key in everything]
-    return [*chosen, *OBJECTIVES]
+    axes = [*chosen, *OBJECTIVES]
+    place = {key: index for index, key in enumerate(order)}
+    return sorted(axes, key=lambda quantity: place.get(quantity.key, len(place)))
+
+
+def moved(picture: RunPicture, order: Sequence[str], start: float, end: float) -> tuple[str, ...] | None:
+    """The order of the axes after one was dragged from one fraction of the chart's width to another; None for none."""
+    keys = [quantity.key for quantity in axes_of(picture, order)]
+    if not max(abs(start), abs(end)) < 10.0:
+        return None
+    source, target = (round(fx * (len(keys) - 1)) for fx in (start, end))
+    if not 0 <= source < len(keys) or source == target:
+        return None
+    key = keys.pop(source)
+    keys.insert(min(max(target, 0), len(keys)), key)
+    return tuple(keys)
 
 
 def _axis_title(quantity: Quantity) -> str:
@@ -37,9 +53,22 @@ def parallel_chart(
     generation: int | None,
     width: float,
     height: float,
+    order: Sequence[str] = (),
+    colour: Quantity | None = None,
 ) -> Markup:
-    """The chart as SVG: the archive thin, the front thick, what a brush keeps out faded."""
-    axes = [(quantity, picture.column(quantity.key)) for quantity in axes_of(picture)]
+    """The chart as SVG: the archive thin, the front thick, what a brush keeps out faded.
+
+    Args:
+        picture: the run.
+        filters: of the brushes.
+        selected: a design's id, drawn on top.
+        generation: up to which one, or None for all.
+        width, height: px.
+        order: of the axes, by key.
+        colour: what the colour of a line tells; the level where it is None.
+    """
+    axes = [(quantity, picture.column(quantity.key)) for quantity in axes_of(picture, order)]
+    tints = picture.column(colour.key) if colour is not None else None
     left, right, top, bottom = 26.0, 26.0, 46.0, 20.0
     count = len(axes)
     gap = (width - left - right) / max(count - 1, 1)
@@ -56,6 +85,7 @@ def parallel_chart(
     rows = np.union1d(rows, front_rows)
     limits = [_axis_limits(picture, quantity, values) for quantity, values in axes]
     keep = picture.inside(filters)
+    tint_limits = finite_limits(tints[rows]) if tints is not None else (0.0, 1.0)
     selected_row = picture.row(selected) if selected is not None else None
     for group, css in ((rows, "archive"), (front_rows, f"level{newest.level if newest else 1}")):
         for row in group:
@@ -69,6 +99,9 @@ def parallel_chart(
                 points.append(f"{left + index * gap:.0f} {top + (1 - (value - low) / (high - low)) * plot_height:.1f}")
             if points:
                 fade = "opacity:.06" if not keep[row] else "opacity:.35" if css == "archive" else "opacity:.9"
+                if tints is not None:
+                    tint = colour_of(float(tints[row]), tint_limits)
+                    fade += f";stroke:{tint};stroke-width:{1.0 if css == 'archive' else 2.0}" if tint else ""
                 path = "M" + "L".join(points)
                 parts.append(fill('<path d="{}" class="line thin {}" style="{}"/>', path, css, fade))
                 if row == selected_row:
@@ -78,8 +111,9 @@ def parallel_chart(
         low, high = limits[index]
         title_y = 11 if index % 2 == 0 else 25
         parts.append(fill('<path d="M{:.1f} {:.1f}V{:.1f}" class="axis"/>', x, top, top + plot_height))
-        title = fill("<title>{}</title>{}", quantity.label, symbol_svg(_axis_title(quantity)))
-        parts.append(fill(_TEXT, x, title_y, "axis-title", title))
+        hint = f"{quantity.label}; drag the name sideways to move its axis"
+        title = fill("<title>{}</title>{}", hint, symbol_svg(_axis_title(quantity)))
+        parts.append(fill(_TEXT, x, title_y, "axis-title axis-move", title))
         for value, y in ((high, top - 4), (low, top + plot_height + 12)):
             parts.append(fill(_TEXT, x, y, "note", number_text(value, min(quantity.decimals, 3))))
         if quantity.key in filters:
@@ -94,7 +128,7 @@ def parallel_chart(
         '<svg class="chart" data-chart="parallel" data-plot="{left:g},{top:g},{wide:g},{high:g}" '
         'data-limits="0,1,0,1" data-drag="brush" data-click="1" viewBox="0 0 {width:g} {height:g}" role="img" '
         'aria-label="parallel coordinates">{parts}</svg><p class="soft">Drag along an axis to keep a range (it filters '
-        "the Pareto chart too); click an axis to drop its range.</p>",
+        "the Pareto chart too); click an axis to drop its range; drag the name of an axis sideways to move it.</p>",
         left=left,
         top=top,
         wide=width - left - right,
@@ -105,13 +139,15 @@ def parallel_chart(
     )
 
 
-def brushed(picture: RunPicture, fx: float, fy0: float, fy1: float) -> tuple[str, tuple[float, float] | None] | None:
+def brushed(
+    picture: RunPicture, order: Sequence[str], fx: float, fy0: float, fy1: float
+) -> tuple[str, tuple[float, float] | None] | None:
     """The axis and range that a drag means: fractions of the plot area, upwards; a mere click drops the range.
 
     Returns:
         (quantity key, range or None), or None when the drag began far from every axis.
     """
-    axes = axes_of(picture)
+    axes = axes_of(picture, order)
     position = fx * (len(axes) - 1)
     index = round(position)
     if not 0 <= index < len(axes) or abs(position - index) > 0.45:

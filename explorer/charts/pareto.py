@@ -108,9 +108,11 @@ def pareto_background(
     archive = drawn.rows[~drawn.front]
     clouds = []
     kept = archive[picture.feasible[archive] & ~picture.by_hand[archive]]
+    solved = kept[~picture.predicted[kept]]
     for css, rows in (
         ("infeasible", archive[~picture.feasible[archive]]),
-        *((f"archive level{level}", kept[picture.level[kept] == level]) for level in LEVEL_NUMBERS),
+        ("archive predicted", kept[picture.predicted[kept]]),
+        *((f"archive level{level}", solved[picture.level[solved] == level]) for level in LEVEL_NUMBERS),
     ):
         for inside, style in ((False, "opacity:.18"), (True, "opacity:.75")):
             clouds.append(Cloud(f[rows[keep[rows] == inside]], css, style=style))
@@ -165,30 +167,35 @@ def newest_families(
 
 @dataclass(frozen=True)
 class Beyond:
-    """Feasible designs that dominate a drawn front of their own level: no chart may show them without a word.
+    """What a drawn front does not say by itself: no chart may show a design that is better than it without a word.
 
     Attributes:
-        count: how many.
+        count: feasible designs that dominate a drawn front of their own level.
         most: by how much the best of them is better in both objectives at once, as a part of the initial design's.
         reasons: why they are not on the front, a sentence a level.
+        margin: in few words, and why, where level 1's front holds designs that the search avoids; else "", "".
     """
 
     count: int = 0
     most: float = 0.0
     reasons: tuple[str, ...] = ()
+    margin: tuple[str, str] = ("", "")
 
 
 def beyond_fronts(picture: RunPicture, generation: int | None = None) -> Beyond:
-    """What is said of feasible designs that dominate a drawn front of their own level."""
-    count, most, reasons = 0, 0.0, []
+    """What is said of feasible designs that dominate a drawn front of their own level, and of the hand-over margin."""
+    count, most, reasons, margin = 0, 0.0, [], ("", "")
     for item in _fronts(picture, generation):
         own = picture.feasible & (picture.level == item.level)
         if generation is not None:
             own &= picture.generation <= generation
-        front = picture.objectives[picture.rows(item.front)]
+        rows = picture.rows(item.front)
+        front = picture.objectives[rows]
         found = np.flatnonzero(own)
         if not len(found) or not len(front):
             continue
+        if item.level == FAST.number:
+            margin = _margin_words(picture, rows)
         gain = front[None, :, :] - picture.objectives[found][:, None, :]
         least, greatest = gain.min(axis=2), gain.max(axis=2)
         better = ((least >= 0.0) & (greatest > 0.0)).any(axis=1)
@@ -196,34 +203,39 @@ def beyond_fronts(picture: RunPicture, generation: int | None = None) -> Beyond:
             count += int(better.sum())
             most = max(most, float(least.max()))
             reasons.append(_why_beyond(picture, item.level, found[better]))
-    return Beyond(count, most, tuple(reasons))
+    return Beyond(count, most, tuple(reasons), margin)
 
 
 def _why_beyond(picture: RunPicture, level: int, rows: NDArray[np.int64]) -> str:
-    settings = picture.case.optimization
-    found = "1 feasible design" if len(rows) == 1 else f"{len(rows)} feasible designs"
-    who = f"{found} of level {level} better than its front"
-    margin, cavitation = settings.handover_margin, picture.column("g_cavitation")
-    hand = int(picture.by_hand[rows].sum())
-    avoided = 0
-    if level == FAST.number and settings.level1_generations < settings.generations and margin > 0.0:
-        values = np.full(len(rows), np.nan) if cavitation is None else cavitation[rows]
-        # where a table does not tell, the margin is the reason that there is
-        avoided = int((~(values <= -margin) & ~picture.by_hand[rows]).sum())
+    hand, predicted = picture.by_hand[rows], picture.predicted[rows]
+    begun = ~hand & ~predicted
     reasons = []
-    if avoided:
+    if predicted.any():
         reasons.append(
-            f"{avoided if avoided < len(rows) else 'all'} within the hand-over margin: before level 2 comes the search "
-            f"keeps {margin:g} of blade area ratio from the cavitation limit, where level 2 asks for more thrust"
+            f"{int(predicted.sum())} predicted by a learnt surface and not solved: the best of many predictions is too "
+            "good by its error, so a front holds solved designs, and predicted ones only while they are the population"
         )
-    if hand:
-        reasons.append(f"{hand} made by hand, which the search does not breed from")
-    if len(rows) > avoided + hand:
-        reasons.append(
-            f"{len(rows) - avoided - hand} no longer in the population, whose newest front is drawn; the archive keeps "
-            "them"
-        )
-    return f"{who}: {'; '.join(reasons)}."
+    if hand.any():
+        reasons.append(f"{int(hand.sum())} made by hand, which the search does not breed from")
+    if begun.any():
+        reasons.append(f"{int(begun.sum())} of a generation that is not finished yet")
+    found = "1 feasible design" if len(rows) == 1 else f"{len(rows)} feasible designs"
+    return f"{found} of level {level} better than its front: {'; '.join(reasons)}."
+
+
+def _margin_words(picture: RunPicture, front: NDArray[np.int64]) -> tuple[str, str]:
+    settings, cavitation = picture.case.optimization, picture.column("g_cavitation")
+    margin = settings.handover_margin
+    if cavitation is None or margin <= 0.0 or settings.level1_generations >= settings.generations:
+        return "", ""
+    within = int((cavitation[front] > -margin).sum())
+    if not within:
+        return "", ""
+    return (
+        f"{within} of the {len(front)} designs on level 1's front are ones that the search avoids",
+        f"They lie within the hand-over margin: before level 2 comes the search keeps {margin:g} of blade area ratio "
+        "from the cavitation limit, where level 2 asks for more thrust.",
+    )
 
 
 def _fixed_marks(picture: RunPicture, options: ParetoOptions) -> list[Mark]:

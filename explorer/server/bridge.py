@@ -24,13 +24,13 @@ from explorer.server.html_slot import Slot
 from hpsop_core.charts.style import SCREEN, style_sheet
 from hpsop_core.markup import Markup, fill
 
-PAGE_VERSION = "1"
+PAGE_VERSION = "2"
 _MAX_MESSAGE = 6000
 # no gesture of ours means a number beyond this; its square still is one
 _MOST = 1e15
 _POINTS = ("x", "y", "fx", "fy", "x0", "x1", "y0", "y1", "fx0", "fx1", "fy0", "fy1")
 _NUMBERS = (*_POINTS, "factor", "width", "height", "drag")
-_TEXTS = ("t", "chart", "name", "arg", "key", "browser")
+_TEXTS = {"t": 200, "chart": 200, "name": 200, "arg": 400, "key": 200, "browser": 200, "link": 1500}
 
 
 @dataclass(frozen=True)
@@ -46,6 +46,7 @@ class PageEvent:
             a pan also drag, which tells one drag from the next.
         shift: whether Shift was held.
         browser: the browser's own name for itself (hello only).
+        link: the query of the address that it was opened with (hello only).
     """
 
     kind: str
@@ -56,6 +57,7 @@ class PageEvent:
     numbers: dict[str, float] = field(default_factory=dict)
     shift: bool = False
     browser: str = ""
+    link: str = ""
 
 
 def _sensible(value: object) -> float | None:
@@ -83,7 +85,7 @@ def parse_events(text: object, seen: int) -> tuple[list[PageEvent], int]:
         if number is None or number <= seen:
             continue
         newest = max(newest, int(number))
-        texts = {name: str(item.get(name, ""))[:200] for name in _TEXTS}
+        texts = {name: str(item.get(name, ""))[:length] for name, length in _TEXTS.items()}
         events.append(
             PageEvent(
                 kind=texts["t"],
@@ -94,6 +96,7 @@ def parse_events(text: object, seen: int) -> tuple[list[PageEvent], int]:
                 numbers={name: value for name in _NUMBERS if (value := _sensible(item.get(name))) is not None},
                 shift=item.get("shift") is True,
                 browser=texts["browser"],
+                link=texts["link"],
             )
         )
     return events, newest
@@ -165,6 +168,16 @@ def picture_file(name: str, drawing: Markup, scale: float, serial: int) -> Marku
         scale,
         serial,
         drawing,
+    )
+
+
+def link_box(query: str, serial: int) -> Markup:
+    """A query that the browser makes a link to its own address of, copies and shows; once a ``serial``."""
+    return fill(
+        '<template data-query="{}" data-serial="{}"></template>'
+        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.link(this)">',
+        query,
+        serial,
     )
 
 

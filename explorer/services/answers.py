@@ -112,6 +112,10 @@ class Answers:
         """
         return self._lines.get((case, variables.key()), lambda: hull_lines(case, variables))
 
+    def known_lines(self, case: Case, variables: DesignVariables) -> HullLines | None:
+        """The same if they have been cut already."""
+        return self._lines.peek((case, variables.key()))
+
     def plan(self, case: Case, variables: DesignVariables) -> tuple[HullLine, ...]:
         """Lines of the lines plan.
 

@@ -13,6 +13,7 @@ from explorer.scene.pressure import PressureMap, blade_map, hull_map
 from explorer.services.answers import Answers
 from explorer.services.display import Display
 from explorer.services.remembered import Remembered
+from explorer.state.link import LinkedDesign
 from explorer.state.shown import Shown
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
@@ -126,6 +127,13 @@ class Designs:
         self._take_run(TRUTH.number)
         return self._answers.refined(self.case, variables)
 
+    def linked(self, named: LinkedDesign) -> Shown | None:
+        """The design that a link names, or None where the run has none such."""
+        if named.design_id is not None:
+            shown = self.shown(named.design_id)
+            return shown if shown is not None and shown.evaluation.ok else None
+        return self.first() if named.variables is None else self.whatif(named.variables, named.level)
+
     def again(self, saved: object) -> Shown | None:
         """The design that ``Shown.saved`` described, or None where it no longer exists."""
         if not isinstance(saved, dict):
@@ -164,6 +172,10 @@ class Designs:
     def lines(self, variables: DesignVariables) -> HullLines:
         """Sections and areas."""
         return self._answers.lines(self.case, variables)
+
+    def known_lines(self, variables: DesignVariables) -> HullLines | None:
+        """The same where they have been cut."""
+        return self._answers.known_lines(self.case, variables)
 
     def plan(self, variables: DesignVariables) -> tuple[HullLine, ...]:
         """Lines of the lines plan."""

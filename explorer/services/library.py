@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import os
 import re
 import tempfile
 import time
-from dataclasses import dataclass
+from dataclasses import dataclass, field
 from pathlib import Path
 
+from explorer.services.run_labels import RunLabel, RunLabels
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.runs.lock import is_being_written
 from hpsop_core.runs.reader import RunReader, open_run
@@ -39,6 +41,8 @@ class LibraryEntry:
         modified: seconds since 1970.
         deletable: nobody writes it.
         continuable: nobody writes it and it has generations left.
+        label: what people call it.
+        shipped: it is the demonstration, which comes with hpsop.
     """
 
     name: str
@@ -47,6 +51,8 @@ class LibraryEntry:
     modified: float
     deletable: bool
     continuable: bool = False
+    label: RunLabel = field(default_factory=RunLabel)
+    shipped: bool = False
 
 
 def runs_folder() -> tuple[Path, str]:
@@ -79,10 +85,20 @@ def runs_folder() -> tuple[Path, str]:
 
 
 class RunLibrary:
-    """The folder's runs; a name from a browser is only ever compared with the names that are there."""
+    """The folder's runs; a name from a browser is only ever compared with the names that are there.
 
-    def __init__(self, folder: Path) -> None:
+    Args:
+        folder: of the runs.
+        demonstration: a finished run that stands among them for ever, and is never written; None where there is none.
+
+    Attributes:
+        labels: what people call the runs.
+    """
+
+    def __init__(self, folder: Path, demonstration: Path | None = None) -> None:
         self.folder = folder
+        self.demonstration = demonstration
+        self.labels = RunLabels(folder)
         self._known: dict[str, tuple[tuple[float, int], LibraryEntry]] = {}
 
     def new_path(self, case_name: str) -> Path:
@@ -109,10 +125,34 @@ class RunLibrary:
         for path in self._files():
             if path.name == name:
                 return path
-        return None
+        shipped = self.demonstration
+        return shipped if shipped is not None and shipped.name == name else None
+
+    def is_shipped(self, path: Path) -> bool:
+        """Whether it is the demonstration, which is only read."""
+        return path == self.demonstration
 
     def entries(self) -> list[LibraryEntry]:
-        """Every run, newest first; a file that is no run says so."""
+        """Every run, newest first, the demonstration last; a file that is no run says so."""
+        labels = self.labels.all()
+        runs = [dataclasses.replace(item, label=labels.get(item.name, RunLabel())) for item in self._own_entries()]
+        shipped = self.demonstration
+        if shipped is not None and all(item.name != shipped.name for item in runs):
+            known = self._known.get("")
+            if known is None:
+                known = self._known[""] = ((0.0, 0), _entry(shipped, 0.0))
+            runs.append(
+                dataclasses.replace(
+                    known[1],
+                    deletable=False,
+                    continuable=False,
+                    label=labels.get(shipped.name, RunLabel()),
+                    shipped=True,
+                )
+            )
+        return runs
+
+    def _own_entries(self) -> list[LibraryEntry]:
         found = []
         for path in self._files():
             try:
@@ -147,6 +187,8 @@ class RunLibrary:
         path = self.path(name)
         if path is None:
             raise InputError(f"{name}: no such run in {self.folder}")
+        if self.is_shipped(path):
+            raise InputError("the demonstration comes with hpsop and stays")
         if is_being_written(path):
             raise InputError(f"{name}: is being written; stop that run first")
         try:
@@ -154,6 +196,7 @@ class RunLibrary:
                 path.with_name(path.name + suffix).unlink(missing_ok=True)
         except OSError as error:
             raise InputError(f"{name}: cannot be deleted ({error.strerror})") from None
+        self.labels.write(name, "", "")
 
     def _files(self) -> list[Path]:
         try:

@@ -36,8 +36,10 @@ from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.quantities import Quantity, all_quantities, condition_names, variable_quantities
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.events import RunEvent
+from hpsop_core.runs.fronts import FrontHistory
 from hpsop_core.runs.lock import is_being_written
 from hpsop_core.runs.reader import RunReader, open_run
+from hpsop_core.runs.records import ArchivePoint
 from hpsop_core.runs.refinement import keep_errors
 from hpsop_core.runs.store import RunStore
 
@@ -93,8 +95,10 @@ class RunKeeper:
         self._guard = threading.RLock()
         self._known: set[int] = set()
         self._ids = np.zeros(0, dtype=np.int64)
-        self._rows = np.zeros((0, 7))
-        self._predictions = 0
+        self._rows = np.zeros((0, 8))
+        # by id, as its fronts need them
+        self._points: dict[int, ArchivePoint] = {}
+        self._fronts = FrontHistory(self._points)
         self._table = np.zeros((0, 0))
         self._quantities: tuple[Quantity, ...] = ()
         self._picture: RunPicture | None = None
@@ -345,12 +349,16 @@ class RunKeeper:
         status, message = self._status(reader, driven)
         if reader is None:
             return RunPicture(self.path.name, case, status, message, driven, opening=self.opening)
-        generations = tuple(
-            GenerationPicture(item.number, item.level, item.members, item.front, item.hypervolume)
-            for item in reader.generations()
-        )
+        finished = reader.generations()
         self._read_new(reader)
-        newest = reader.generation()
+        for item in finished[len(self._fronts.fronts) :]:
+            self._fronts.add(item)
+        fronts = self._fronts.fronts
+        generations = tuple(
+            GenerationPicture(item.number, item.level, item.members, front.ids, front.hypervolume)
+            for item, front in zip(finished, fronts, strict=True)
+        )
+        newest = fronts[-1] if fronts else None
         snapshot = self._event.snapshot if self._event is not None else None
         total = snapshot.generations if snapshot is not None and snapshot.generations else reader.generations_asked()
         if total != case.optimization.generations:
@@ -376,7 +384,7 @@ class RunKeeper:
             knee=newest.knee if newest is not None else None,
             seconds_left=snapshot.seconds_left if snapshot is not None else None,
             elapsed=elapsed,
-            predictions=self._predictions,
+            predicted=self._rows[:, 7] > 0.5,
             opening=self.opening,
             comparison=self._comparison(reader, generations),
         )
@@ -410,10 +418,10 @@ class RunKeeper:
                     point.feasible,
                     point.objectives is None,
                     point.origin == "hand",
+                    point.predicted,
                 ]
             )
             evaluation = record.evaluation
-            self._predictions += evaluation.predicted
             table.append(
                 [
                     np.nan if (value := quantity.value(evaluation)) is None else float(value)
@@ -421,6 +429,7 @@ class RunKeeper:
                 ]
             )
             self._known.add(point.id)
+            self._points[point.id] = point
         # Fresh arrays each time: a picture that a view still draws from never changes under it.
         ids = np.concatenate([self._ids, np.array([point.id for point in fresh], dtype=np.int64)])
         order = np.argsort(ids, kind="stable")

@@ -10,7 +10,9 @@ from explorer.server.worker import LatestWorker
 from explorer.services.designs import Designs
 from explorer.services.display import Display
 from explorer.services.library import LibraryEntry, RunLibrary
+from explorer.services.reports import run_report
 from explorer.services.run_keeper import RunKeeper
+from explorer.services.run_labels import RunLabel
 from explorer.state.run_picture import ACTIVE, FAILED, IDLE, STARTING, STOPPING, RunPicture
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation.result import Evaluation
@@ -52,7 +54,7 @@ class Runs:
                 raise InputError("there is no run yet; press Start first")
             design_id = keeper.add_by_hand(evaluation)
             self._display.show_run(keeper.picture(), self._designs.first)
-        return design_id
+            return design_id
 
     def can_add_by_hand(self) -> bool:
         """Whether the run on display can keep a hand-made design."""
@@ -101,7 +103,7 @@ class Runs:
         path = self._library.path(name)
         if path is None:
             raise InputError(f"{name[:60]}: no such run in the folder")
-        self.open(path)
+        self.open(path, read_only=self._library.is_shipped(path))
 
     def continue_named(self, name: str) -> None:
         """Show a run of the library and go on with it.
@@ -242,6 +244,32 @@ class Runs:
         if self._keeper is not None and self._keeper.path == self._library.path(name):
             self.close_run()
         self._library.delete(name)
+
+    def label(self) -> RunLabel:
+        """What people call the run on display."""
+        return self._library.labels.of(self._display.picture.name)
+
+    def relabel(self, run: str, name: str | None = None, note: str | None = None) -> None:
+        """Give a run of the library another name or note.
+
+        Raises:
+            InputError: there is no such run.
+        """
+        if self._library.path(run) is None:
+            raise InputError(f"{run[:60]}: no such run in the folder")
+        self._library.labels.write(run, name, note)
+        self._display.tell_all("library")
+
+    def report(self) -> tuple[str, bytes]:
+        """A name for the file, and the report of the run on display as it is now; takes seconds.
+
+        Raises:
+            InputError: there is no run, or it cannot be made.
+        """
+        keeper = self._keeper
+        if keeper is None:
+            raise InputError("report: there is no run yet; press Start first")
+        return f"{keeper.path.stem}-report.html", run_report(keeper.path)
 
     def folder_text(self) -> str:
         """The folder, for people."""

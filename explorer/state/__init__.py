@@ -2,8 +2,9 @@
 
 A file for a thought: ``app_state`` (what all browsers share), ``session`` (what belongs to one of them), ``draft`` (the
 case being set up), ``own_ship`` (a ship that is being brought in), ``run_picture`` (a run at one moment), ``shown`` (a
-design on display), ``view_options`` (what is drawn in 3D), ``table_options`` (how the table of all designs is shown);
-``hub`` (who wants to know of which change), ``gestures`` (who answers which gesture).
+design on display), ``view_options`` (what is drawn in 3D), ``table_options`` (how the table of all designs is shown),
+``chart_options`` (what a run's charts show), ``link`` (all of it as an address), ``history`` (steps that can be taken
+back); ``hub`` (who wants to know of which change), ``gestures`` (who answers which gesture).
 
 The flow, everywhere on the page: **action -> state -> hub -> views**. A gesture or a widget calls a method of
 ``Session`` or ``AppState`` (the action), which changes the state and tells the hub which topic changed; the hub calls

@@ -9,7 +9,8 @@ from dataclasses import dataclass, field
 from typing import Any, Protocol
 
 from explorer.server.worker import LatestWorker
-from explorer.state.draft import Draft
+from explorer.state.draft import Draft, DraftSnapshot
+from explorer.state.history import History
 from explorer.state.hub import Hub
 from explorer.state.own_ship import OwnShip
 from explorer.state.run_picture import RunPicture
@@ -48,7 +49,9 @@ class AppState:
         memory: what a reload brings back, by the browser's own name; the latest is the last.
         doings: who did what to the run last, for people.
         asked_to_delete: the run of the library that somebody is being asked about, or "".
+        renamed: the run of the library whose name and note are being written, or "".
         ship: a ship of the user's own on its way to a case.
+        history: changes of the settings, which can be taken back.
     """
 
     draft: Draft
@@ -61,7 +64,9 @@ class AppState:
     on_remember: Callable[[], None] | None = None
     doings: str = ""
     asked_to_delete: str = ""
+    renamed: str = ""
     ship: OwnShip = field(default_factory=OwnShip)
+    history: History[DraftSnapshot] = field(default_factory=History)
 
     # ---- browsers --------------------------------------------------------------------------------------------------
     def join(self, client_id: int, watcher: Watcher) -> None:
@@ -155,6 +160,11 @@ class AppState:
         self.asked_to_delete = name
         self.tell_all("library")
 
+    def rename(self, name: str) -> None:
+        """Open the boxes for this run's name and note, or none for ""."""
+        self.renamed = name
+        self.tell_all("library")
+
     # ---- a ship of the user's own --------------------------------------------------------------------------------
     def change_ship(self, **changes: Any) -> OwnShip:
         """Change something of the ship that is being brought in; returns it as it is then."""
@@ -182,10 +192,26 @@ class AppState:
             whole: whether widgets have to follow it too: a preset, a reset, another run's case.
         """
         with self.lock:
+            before = self.draft.snapshot()
             change(self.draft)
+            changed = before.differing(self.draft.snapshot())
+            if changed:
+                self.history.record(before, changed)
         if whole:
             self.show_settings()
         self.tell_all("draft")
+
+    def turn_draft(self, back: bool) -> bool:
+        """Take the last change of the settings back, or again; whether there was one."""
+        with self.lock:
+            present = self.draft.snapshot()
+            found = self.history.undo(present) if back else self.history.redo(present)
+            if found is None:
+                return False
+            self.draft.come_back(found)
+        self.show_settings()
+        self.tell_all("draft")
+        return True
 
     def show_settings(self) -> None:
         """Widgets of the settings show the draft again: it was changed elsewhere, or what was typed was refused."""

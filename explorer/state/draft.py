@@ -5,12 +5,37 @@ from __future__ import annotations
 import dataclasses
 import math
 from collections.abc import Mapping, Sequence
+from dataclasses import dataclass
 from typing import Any
 
 from hpsop_core.case.case import SECTIONS, SHIPPED_CASES, Case, case_from_toml, load_case
 from hpsop_core.case.fields import checked_value, rules
 from hpsop_core.case.variables import VARIABLE_TABLE, DesignSpace, DesignVariables
 from hpsop_core.errors import InputError
+
+
+@dataclass(frozen=True)
+class DraftSnapshot:
+    """The settings at one moment: a preset and what was changed of it."""
+
+    base: Case
+    changes: Mapping[str, Mapping[str, Any]]
+
+    def differing(self, other: DraftSnapshot) -> frozenset[tuple[str, str]]:
+        """The (section, field) in which two of them differ; ("", "") where they stand on different presets."""
+        if self.base != other.base:
+            return frozenset({("", "")})
+        sections = {*self.changes, *other.changes}
+        pairs = {
+            (section, name)
+            for section in sections
+            for name in {*self.changes.get(section, {}), *other.changes.get(section, {})}
+        }
+        return frozenset(
+            (section, name)
+            for section, name in pairs
+            if self.changes.get(section, {}).get(name) != other.changes.get(section, {}).get(name)
+        )
 
 
 class Draft:
@@ -89,6 +114,15 @@ class Draft:
     def count(self) -> int:
         """How many fields differ from the preset."""
         return sum(len(fields) for fields in self.changes.values())
+
+    def snapshot(self) -> DraftSnapshot:
+        """What stands now, to come back to."""
+        return DraftSnapshot(self.base, {section: dict(fields) for section, fields in self.changes.items()})
+
+    def come_back(self, snapshot: DraftSnapshot) -> None:
+        """Let stand again what stood then."""
+        self.base, self.held = snapshot.base, {}
+        self.changes = {section: dict(fields) for section, fields in snapshot.changes.items()}
 
     def initial(self) -> DesignVariables:
         """The initial design as it stands; the preset's while the fields make no design."""

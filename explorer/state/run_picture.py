@@ -25,7 +25,7 @@ ACTIVE = (STARTING, RUNNING, PAUSED, STOPPING)
 
 @dataclass(frozen=True)
 class GenerationPicture:
-    """One generation: its number from 1, level, members, feasible front and hypervolume."""
+    """One generation: its number from 1, level, members, and the front known by then with its hypervolume."""
 
     number: int
     level: int
@@ -47,8 +47,7 @@ class RunPicture:
         live: whether this program drives it (else it is only read).
         ids, level, generation: of every finished evaluation, shape (n,), ids ascending.
         objectives: (n, 2), NaN where the evaluation failed.
-        feasible, failed, by_hand: (n,).
-        predictions: how many of them a learnt surface predicted.
+        feasible, failed, by_hand, predicted: (n,); predicted by a learnt surface instead of solved.
         table: (n, len(columns)), NaN where a number is missing.
         columns: quantity keys of the table.
         generations: finished generations in order.
@@ -77,7 +76,7 @@ class RunPicture:
     knee: int | None = None
     seconds_left: float | None = None
     elapsed: float = 0.0
-    predictions: int = 0
+    predicted: NDArray[np.bool_] = field(default_factory=lambda: np.zeros(0, dtype=bool))
     opening: int = 0
     comparison: Mapping[int, Mapping[str, float]] = field(default_factory=dict)
 
@@ -88,7 +87,9 @@ class RunPicture:
             ValueError: it would be made of two different moments.
         """
         count = len(self.ids)
-        flags = (self.level, self.generation, self.feasible, self.failed, self.by_hand)
+        if not len(self.predicted):
+            object.__setattr__(self, "predicted", np.zeros(count, dtype=bool))
+        flags = (self.level, self.generation, self.feasible, self.failed, self.by_hand, self.predicted)
         if (
             any(values.shape != (count,) for values in flags)
             or self.objectives.shape != (count, 2)
@@ -100,6 +101,11 @@ class RunPicture:
     def total_generations(self) -> int:
         """Planned generations of both levels."""
         return self.case.optimization.generations
+
+    @property
+    def predictions(self) -> int:
+        """How many designs a learnt surface predicted."""
+        return int(self.predicted.sum())
 
     @property
     def current_level(self) -> int:

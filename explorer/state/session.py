@@ -8,8 +8,10 @@ from typing import Any
 
 from explorer.server.worker import LatestWorker
 from explorer.state.app_state import AppState
+from explorer.state.chart_options import ChartOptions
 from explorer.state.gestures import Gestures
 from explorer.state.hub import Hub
+from explorer.state.link import Link, LinkedDesign
 from explorer.state.run_picture import RunPicture
 from explorer.state.shown import Shown
 from explorer.state.table_options import TableOptions
@@ -26,6 +28,9 @@ _SCENE_SETTLES = 0.06
 LEFT_DOCK = 340
 # windows narrower than this (px) show the left dock when asked, and the right one has this part of them
 _NARROW, _NARROW_SHARE = 1200, 0.44
+# viser's page is a sheet over the 3D view in windows of this width or less (36 em), px; assets/page.css gives the sheet
+# this part of their height
+PHONE, PHONE_SHEET = 576, 0.58
 # sides of a browser's window that can be meant, px
 _LEAST_SIDE, _MOST_SIDE = 100, 20000
 
@@ -46,6 +51,9 @@ class Session:
         tab: the chosen chart.
         options: of the 3D view.
         table: how the table of all designs is shown.
+        charts: what the charts of a run show.
+        follow: whether the selection goes on to the newest compromise as a run finds it.
+        followed: the design that this has selected last, or None.
         archive, infeasible: what the Pareto chart shows besides the front.
         size: of the browser's window in px.
         legends: of what is overlaid in 3D, by overlay.
@@ -69,6 +77,9 @@ class Session:
         self.tab = "open_water"
         self.options = ViewOptions()
         self.table = TableOptions()
+        self.charts = ChartOptions()
+        self.follow = False
+        self.followed: int | None = None
         self._stars: dict[str, frozenset[int]] = {}
         self.archive = True
         self.infeasible = False
@@ -113,8 +124,15 @@ class Session:
     @property
     def dock_width(self) -> int:
         """Of the right dock in px: a large screen gives its charts more room, a small one leaves half to the ship."""
+        if self.phone:
+            return self.size[0]
         width = min(max(490, round(0.31 * self.size[0])), 620)
         return min(width, round(_NARROW_SHARE * self.size[0])) if self.narrow else width
+
+    @property
+    def phone(self) -> bool:
+        """Whether the window is so small that the page is one column: the ship, and below it the panels."""
+        return self.size[0] <= PHONE
 
     @property
     def narrow(self) -> bool:
@@ -235,6 +253,22 @@ class Session:
         self.table = dataclasses.replace(self.table, **changes)
         self._changed("table")
 
+    def set_charts(self, **changes: Any) -> None:
+        """Change what the charts of a run show."""
+        self.charts = dataclasses.replace(self.charts, **changes)
+        self._changed("charts")
+
+    def set_follow(self, on: bool) -> None:
+        """Let the selection go on to the newest compromise, or stay."""
+        self.follow, self.followed = on, None
+        self._changed("follow")
+
+    def go_on(self, shown: Shown) -> None:
+        """The newest compromise, that a run has found while it is followed."""
+        self.followed = shown.design_id
+        if shown is not self.selected:
+            self.select(shown)
+
     def star(self, design_id: int) -> None:
         """Give a design of the run on display a star, or take it back."""
         run = self.picture.name
@@ -265,13 +299,64 @@ class Session:
             self.limits = {}
             self.table = dataclasses.replace(self.table, page=0)
             self._pins = ()
+            self.followed = None
             self._selected = first
-        self.hub.changed("run", "selection", "scrub", "filter", "pins")
+        self.hub.changed("left", "run", "selection", "scrub", "filter", "pins")
 
     def _changed(self, topic: str) -> None:
         """Tell the views, and keep for a reload what has changed."""
         self.hub.changed(topic)
         self.remember()
+
+    # ---- links -----------------------------------------------------------------------------------------------------
+    def link(self) -> Link:
+        """What a link to this page says."""
+        return Link(
+            run=self.picture.name,
+            generation=self.scrubbed,
+            design=LinkedDesign.of(self.selected) if self.selected is not None else None,
+            pins=tuple(LinkedDesign.of(item) for item in self.pins),
+            options=self.options,
+            tab=self.tab,
+        )
+
+    def follow_link(self, link: Link, find: Callable[[LinkedDesign], Shown | None]) -> list[str]:
+        """Look at what a link says, of the run on display.
+
+        Args:
+            link: its run is on display already.
+            find: a design that it names, or None where there is none.
+
+        Returns:
+            Words for what is not there.
+        """
+        missing = []
+        if link.generation is not None:
+            if link.generation <= len(self.picture.generations):
+                self.scrubbed = link.generation
+            else:
+                missing.append(f"generation {link.generation}")
+        if link.design is not None:
+            found = find(link.design)
+            if found is None:
+                missing.append(f"design {link.design.word()[:20]}")
+            else:
+                self._selected = found
+        pins = [find(pin) for pin in link.pins]
+        if pins:
+            self._pins = tuple(shown for shown in pins if shown is not None)
+            missing += ["a pinned design"] * pins.count(None)
+        if link.options is not None:
+            own = {
+                name: value
+                for name, value in dataclasses.asdict(self.options).items()
+                if name == "dark" or name.startswith("picture")
+            }
+            self.options = dataclasses.replace(link.options, **own)
+        self.tab = link.tab or self.tab
+        self._changed("options")
+        self.hub.changed("selection", "pins", "scrub", "tab")
+        return missing
 
     # ---- coming back after a reload --------------------------------------------------------------------------------
     def remember(self) -> None:
@@ -292,6 +377,8 @@ class Session:
             "infeasible": self.infeasible,
             "options": dataclasses.asdict(self.options),
             "table": dataclasses.asdict(self.table),
+            "charts": dataclasses.asdict(self.charts),
+            "follow": self.follow,
             "stars": {run: sorted(stars) for run, stars in self._stars.items() if stars},
         }
 
@@ -304,6 +391,8 @@ class Session:
         """
         self.options = self.options.restored(saved.get("options"))
         self.table = self.table.restored(saved.get("table"))
+        self.charts = self.charts.restored(saved.get("charts"))
+        self.follow = saved.get("follow") is True
         stars = saved.get("stars")
         for run, ids in stars.items() if isinstance(stars, dict) else ():
             if isinstance(ids, list):
@@ -318,4 +407,4 @@ class Session:
             again = [find(item) for item in pins[:MOST_PINS]] if isinstance(pins, list) else []
             self._pins = tuple(shown for shown in again if shown is not None)
             self._selected = find(saved.get("selected")) or self._selected
-        self.hub.changed("selection", "pins", "scrub", "options", "tab", "layers", "table", "stars")
+        self.hub.changed("selection", "pins", "scrub", "options", "tab", "layers", "table", "stars", "charts", "follow")

@@ -4,12 +4,16 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 
+from explorer.charts.colour_ramp import finite_limits, ramp
+from explorer.charts.designs_table import known_columns
 from explorer.charts.drivers import drivers_table
 from explorer.charts.parallel import parallel_chart
+from explorer.charts.scatter import choices
 from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.views.charts_view import ChartTab
 from explorer.views.chips import soft
+from explorer.views.families import families
 from explorer.views.on_display import overlaid
 from explorer.views.saving import Figure
 from hpsop_core.charts.engine import engine_chart
@@ -154,7 +158,19 @@ def _parallel(session: Session, _designs: Designs) -> Drawing:
     shown = session.selected
     selected = shown.design_id if shown else None
     sheet = _sheet(session, 0.36, 240.0, 360.0)
-    return [parallel_chart(session.picture, session.filters, selected, session.scrubbed, sheet.width, sheet.height)]
+    picture, options = session.picture, session.charts
+    colour = known_columns(picture).get(options.axis_colour)
+    values = picture.column(colour.key) if colour is not None else None
+    chart = parallel_chart(
+        picture, session.filters, selected, session.scrubbed, sheet.width, sheet.height, options.axes, colour
+    )
+    if colour is None or values is None:
+        return [chart]
+    return [chart, ramp(colour, finite_limits(values[picture.feasible & ~picture.failed]))]
+
+
+def _parallel_controls(session: Session) -> Markup:
+    return choices("axis_colour", session.picture, session.charts.axis_colour, "colour of the lines", True)
 
 
 def _drivers(session: Session, _designs: Designs) -> Drawing:
@@ -202,20 +218,22 @@ def _failures(session: Session, designs: Designs) -> Drawing:
 
 
 _DESIGN = frozenset({"selection", "pins"})
+_PARALLEL = frozenset({"run", "filter", "selection", "scrub", "charts"})
 _TABS = (
     ChartTab("open_water", "Open water", "design", _DESIGN, _open_water),
     ChartTab("resistance", "Resistance", "design", _DESIGN | {"curves"}, _resistance),
     ChartTab("thrust", "Thrust", "design", _DESIGN | {"curves"}, _thrust),
-    ChartTab("engine", "Power, engine", "design", _DESIGN | {"curves"}, _engine),
+    ChartTab("engine", "Power", "design", _DESIGN | {"curves"}, _engine),
     ChartTab("lines", "Lines", "design", _DESIGN, _lines),
     ChartTab("lines_plan", "Lines plan", "design", frozenset({"selection", "curves"}), _lines_plan),
-    ChartTab("parallel", "Parallel coordinates", "run", frozenset({"run", "filter", "selection", "scrub"}), _parallel),
+    ChartTab("parallel", "Parallel", "run", _PARALLEL, _parallel, _parallel_controls, below=True),
+    ChartTab("families", "Families", "run", frozenset({"run", "scrub", "selection", "curves"}), families),
     ChartTab("drivers", "Drivers", "run", frozenset({"run"}), _drivers),
     ChartTab("convergence", "Convergence", "run", frozenset({"run"}), _convergence),
     ChartTab("failures", "Failures", "run", frozenset({"run"}), _failures),
 )
 
 
-def chart_tabs() -> dict[str, ChartTab]:
-    """All charts by name, in order."""
-    return {tab.name: tab for tab in _TABS}
+def chart_tabs(*more: ChartTab) -> dict[str, ChartTab]:
+    """All charts by name, in order; ``more``, which answer gestures of their own, before the others of their row."""
+    return {tab.name: tab for tab in (*more, *_TABS)}

@@ -12,7 +12,7 @@ from explorer.server.bridge import PageEvent
 from explorer.server.html_slot import Slot
 from explorer.services.designs import Designs
 from explorer.state.session import Session
-from explorer.views.chips import box, chip, chips, soft
+from explorer.views.chips import NOTHING, box, chip, chips, soft
 from explorer.views.saving import Figure, Saving, shown
 from hpsop_core.markup import Markup, fill, joined
 
@@ -27,6 +27,8 @@ class ChartTab:
         topics: what it is drawn from.
         of: "design" or "run": which row its button stands in.
         render: charts and HTML in their order; called on the session's worker.
+        controls: lists to choose from, apart, so that one that is open stays open while a chart is drawn anew.
+        below: whether these stand below the charts instead of above.
     """
 
     name: str
@@ -34,6 +36,8 @@ class ChartTab:
     of: str
     topics: frozenset[str]
     render: Callable[[Session, Designs], Sequence[Figure | Markup]]
+    controls: Callable[[Session], Markup] | None = None
+    below: bool = False
 
 
 class ChartsView:
@@ -47,7 +51,9 @@ class ChartsView:
         self._tabs = tabs
         self._saving = saving
         self._bar = Slot(gui)
+        self._controls = Slot(gui)
         self._html = Slot(gui)
+        self._controls_below = Slot(gui)
         session.gestures.on("act", "tab", self._choose)
         for topic in sorted({topic for tab in tabs.values() for topic in tab.topics}):
             session.hub.on((topic,), partial(self._topic, topic))
@@ -68,6 +74,9 @@ class ChartsView:
         self._draw_chart(chosen)
 
     def _draw_chart(self, chosen: ChartTab) -> None:
+        controls = box(chosen.controls(self._session)) if chosen.controls is not None else NOTHING
+        self._controls.show(NOTHING if chosen.below else controls)
+        self._controls_below.show(controls if chosen.below else NOTHING)
         parts = chosen.render(self._session, self._designs)
         save = self._saving.offer([part for part in parts if isinstance(part, Figure)])
         self._html.show(box(fill('<div data-chart-tab="{}">{}</div>', chosen.name, shown(parts)), save))

@@ -7,6 +7,7 @@ import time
 import viser
 
 from explorer.server.html_slot import Slot
+from explorer.services.library import LibraryEntry
 from explorer.services.runs import Runs
 from explorer.state.app_state import AppState
 from explorer.views.chips import GAP, NOTHING, box, chip, chips, soft
@@ -43,18 +44,48 @@ class LibraryView:
                     if entry.continuable and not current
                     else NOTHING,
                     chip("adopt", "use its settings", hint="set up the next run like this one") if current else NOTHING,
-                    chip("delete_run", "delete …", entry.name, disabled=not entry.deletable),
+                    chip(
+                        "rename_run",
+                        "done" if self._app.renamed == entry.name else "name, note …",
+                        "" if self._app.renamed == entry.name else entry.name,
+                        hint="what you call this run, and what you want to remember of it",
+                    ),
+                    NOTHING
+                    if entry.shipped
+                    else chip("delete_run", "delete …", entry.name, disabled=not entry.deletable),
                 )
+            label = entry.label
+            boxes = NOTHING
+            if self._app.renamed == entry.name:
+                boxes = _label_box("name", entry, label.name, 60) + _label_box("note", entry, label.note, 300)
             rows.append(
                 fill(
-                    '<div class="row"><b>{}</b><br><span class="soft">{}<br>{} · {}</span>{}</div>',
-                    entry.title,
-                    entry.summary,
-                    age,
+                    '<div class="row" data-run="{}"><b>{}</b><br>{}<span class="soft">{}{}<br>{} · {}</span>{}{}</div>',
                     entry.name,
+                    label.name or entry.title,
+                    fill("{}<br>", label.note) if label.note else NOTHING,
+                    fill("{}<br>", entry.title) if label.name else NOTHING,
+                    entry.summary,
+                    "comes with hpsop, only read" if entry.shipped else age,
+                    entry.name,
+                    boxes,
                     buttons,
                 )
             )
         empty = soft("No runs yet. Each run is saved by itself and stands here.")
         where = soft(f"Folder: {self._runs.folder_text()}")
         self._html.show(box(fill('<div class="rows">{}</div>', joined(rows)) if rows else empty, where))
+
+
+def _label_box(what: str, entry: LibraryEntry, text: str, longest: int) -> Markup:
+    return fill(
+        '<label class="label">{} <input type="text" data-set="run_{}" data-arg="{}" value="{}" maxlength="{}" '
+        'aria-label="{} of the run {}"></label>',
+        what,
+        what,
+        entry.name,
+        text,
+        longest,
+        what,
+        entry.name,
+    )

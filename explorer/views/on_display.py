@@ -15,6 +15,22 @@ def select_design(session: Session, designs: Designs, design_id: int) -> None:
         session.select(shown)
 
 
+def follow_best(session: Session, designs: Designs) -> None:
+    """Go on to the newest compromise where a browser has asked for it, until it selects another design itself."""
+    best, selected = session.picture.compromise, session.selected
+    if not session.follow:
+        return
+    if session.followed is not None and selected is not None and selected.design_id != session.followed:
+        session.set_follow(False)
+        return
+    if best is not None and (selected is None or selected.design_id != best):
+        shown = designs.shown(best)
+        if shown is not None and shown.evaluation.ok:
+            session.go_on(shown)
+    elif best is not None and selected is not None:
+        session.go_on(selected)
+
+
 def select_first(session: Session, designs: Designs) -> None:
     """Where nothing is selected yet: a run's compromise, the initial design its ghost, else the initial design."""
     if session.selected is not None:

@@ -45,7 +45,12 @@ class OverlayView:
         """Bring the overlays to the session's selection and options."""
         session = self._session
         shown, options = session.selected, session.options
-        if shown is None or not shown.evaluation.conditions:
+        if shown is None:
+            return
+        if not shown.evaluation.conditions:
+            # a design that failed has none: those of the one before are not its
+            for name in list(self._drawn):
+                self._remove(name)
             return
         # the blades' map hangs on the propeller's frame, which turns: the ship has to stand first
         session.heavy.wait_until_idle(30.0)
@@ -63,6 +68,10 @@ class OverlayView:
             return
         if self._drawn.get(name) == key:
             return
+        before = self._drawn.get(name)
+        if before is not None and before[-1] != key[-1]:
+            # of another run: not for a moment beside this one's ship
+            self._remove(name)
         session.set_legend(name, soft(f"computing the {name} …", "div"))
         try:
             make()

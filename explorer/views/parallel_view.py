@@ -1,14 +1,17 @@
-"""Brushes on the parallel coordinates."""
+"""Gestures on the parallel coordinates: a drag along an axis keeps a range, one on its name moves it."""
 
 from __future__ import annotations
 
-from explorer.charts.parallel import brushed
+from explorer.charts.parallel import brushed, moved
 from explorer.server.bridge import PageEvent
 from explorer.state.session import Session
 
+# above the axes' ends and the numbers beside them stand their names; page.js draws its band by the same number
+_TOP = 1.06
+
 
 class ParallelBrushes:
-    """Turns drags along an axis into range filters."""
+    """Turns drags into range filters, and into another order of the axes."""
 
     def __init__(self, session: Session) -> None:
         self._session = session
@@ -17,16 +20,23 @@ class ParallelBrushes:
 
     def _brush(self, event: PageEvent) -> None:
         fx, fy0, fy1 = (event.numbers.get(name) for name in ("fx0", "fy0", "fy1"))
-        if fx is not None and fy0 is not None and fy1 is not None:
+        end = event.numbers.get("fx1")
+        if fx is None or fy0 is None or fy1 is None or end is None:
+            return
+        if fy0 <= _TOP:
             self._apply(fx, fy0, fy1)
+            return
+        order = moved(self._session.picture, self._session.charts.axes, fx, end)
+        if order is not None:
+            self._session.set_charts(axes=order)
 
     def _click(self, event: PageEvent) -> None:
         fx, fy = event.numbers.get("fx"), event.numbers.get("fy")
-        if fx is not None and fy is not None:
+        if fx is not None and fy is not None and fy <= _TOP:
             self._apply(fx, fy, fy)
 
     def _apply(self, fx: float, fy0: float, fy1: float) -> None:
-        found = brushed(self._session.picture, fx, fy0, fy1)
+        found = brushed(self._session.picture, self._session.charts.axes, fx, fy0, fy1)
         if found is not None:
             key, limits = found
             self._session.filter({key: limits})

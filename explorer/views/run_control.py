@@ -31,8 +31,13 @@ class RunControl:
             ("delete_run", lambda event: self._app.ask_to_delete(event.arg), ""),
             ("delete_no", lambda event: self._app.ask_to_delete(""), ""),
             ("delete_yes", lambda event: self._delete(event.arg), "deleted a run"),
+            ("rename_run", lambda event: self._app.rename(event.arg), ""),
+            ("run_name", lambda event: self._label(event.arg, "name"), ""),
+            ("run_note", lambda event: self._label(event.arg, "note"), ""),
             ("adopt", lambda event: self._adopt(), "took the shown run's settings over"),
             ("reset_field", lambda event: self._reset(event.arg), ""),
+            ("undo", lambda event: self._turn(back=True), ""),
+            ("redo", lambda event: self._turn(back=False), ""),
             ("widen", lambda event: self._widen(event.arg), ""),
             ("bound", lambda event: self._bound(event.arg), ""),
         )
@@ -60,6 +65,10 @@ class RunControl:
         if self._app.draft.changed(section, name):
             self._app.change_draft(lambda draft: draft.reset(section, name), whole=True)
 
+    def _turn(self, back: bool) -> None:
+        if not self._app.turn_draft(back):
+            raise InputError(f"settings: no change to {'take back' if back else 'make again'}")
+
     def _widen(self, argument: str) -> None:
         """Move a bound out by a quarter of its range: "length_to_breadth.upper"."""
         name, _, side = argument.partition(".")
@@ -81,6 +90,11 @@ class RunControl:
         finally:
             # the slider follows the box, and a refused box its slider
             self._app.show_settings()
+
+    def _label(self, argument: str, what: str) -> None:
+        """A name or note typed into its box: "RUN.hpsop=words"."""
+        run, _, words = argument.partition("=")
+        self._runs.relabel(run, **{what: words})
 
     def _delete(self, name: str) -> None:
         if self._app.asked_to_delete != name:

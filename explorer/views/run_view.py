@@ -38,7 +38,7 @@ class RunView:
         self._buttons = Slot(gui)
         self._facts_slot = Slot(gui)
         self._bar = gui.add_progress_bar(0.0)
-        app.hub.on(("run", "people"), self.draw)
+        app.hub.on(("run", "people", "library"), self.draw)
         self.draw()
 
     def draw(self) -> None:
@@ -77,13 +77,20 @@ class RunView:
         message = NOTHING
         if picture.message:
             message = fill('<p class="{}">{}</p>', "bad" if status == FAILED else "soft", picture.message)
-        name = fill('<span class="soft" title="{}">{}</span>', picture.name, _short(picture.name))
+        label = runs.label()
+        name = fill(
+            '<span class="soft" title="{}">{}</span>',
+            f"{picture.name} {label.note}".strip(),
+            label.name or _short(picture.name),
+        )
         self._status.show(
             box(
                 fill(
-                    '<div class="status" data-run-name="{file}" data-run-status="{status}" data-generation="{count}">'
+                    '<div class="status" data-run-name="{file}" data-run-title="{title}" data-run-status="{status}" '
+                    'data-generation="{count}">'
                     '<b class="state-{status}">{word}</b> {name}<span class="gap"></span></div>',
                     file=picture.name,
+                    title=label.name,
                     status=status,
                     count=len(picture.generations),
                     word=word,

@@ -31,6 +31,7 @@ class Figure:
         name: one word.
         plot: what is drawn.
         numbers: its CSV where the plot's own series are not it.
+        gestures: what its element says of the gestures that Python answers; "": values at the pointer alone.
         wide: whether it stands at its own width in a box that scrolls, instead of at the panel's.
     """
 
@@ -38,12 +39,14 @@ class Figure:
     plot: Plot
     numbers: Callable[[], str] | None = None
     wide: bool = False
+    gestures: str = ""
 
     def svg(self) -> Markup:
         """As it stands on the page."""
         if not self.wide:
-            return self.plot.svg(self.name)
-        sheet = fill('<div style="width:{:g}px">{}</div>', self.plot.area.picture_width, self.plot.svg(self.name))
+            return self.plot.svg(self.name, self.gestures, readable=not self.gestures)
+        drawn = self.plot.svg(self.name, readable=True)
+        sheet = fill('<div style="width:{:g}px">{}</div>', self.plot.area.picture_width, drawn)
         return scrolling(self.name, sheet)
 
 

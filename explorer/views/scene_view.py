@@ -18,7 +18,7 @@ from explorer.scene.nodes import Nodes
 from explorer.scene.surroundings import calm_water, sky
 from explorer.server.bridge import PageEvent
 from explorer.services.designs import Designs
-from explorer.state.session import Session
+from explorer.state.session import PHONE_SHEET, Session
 from explorer.views.on_display import ghost_of
 from hpsop_core.errors import HpsopError
 
@@ -239,6 +239,8 @@ class SceneView:
     def _between_docks(self) -> float:
         session = self._session
         width, height = session.size
+        if session.phone:
+            return width / ((1.0 - PHONE_SHEET) * height)
         right = 0 if session.options.wide else session.dock_width
         return max(width - session.left_dock - right, 200.0) / max(height, 200.0)
 

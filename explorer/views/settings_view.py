@@ -324,7 +324,14 @@ class SettingsView:
                 for name in fields
             )
             changed = joined([soft("Changed (●):"), chips(*words)])
-        self._about.show(box(fill("<p><b>{}</b></p>", draft.base.title), soft(lines), trouble))
+        history = self._app.history
+        # always there: what lies below must not move away from under the mouse
+        steps = chips(
+            chip("undo", "↶ undo", disabled=not history.can_undo, hint="take the last change of the settings back"),
+            chip("redo", "↷ redo", disabled=not history.can_redo, hint="make it again"),
+            soft(f"{count} changed" if count else "as the preset", "span"),
+        )
+        self._about.show(box(fill("<p><b>{}</b></p>", draft.base.title), soft(lines), trouble, steps))
         self._changed.show(box(changed) if count else NOTHING)
         self._trouble.show(box(trouble) if trouble else NOTHING)
         self._reset.visible = count > 0

@@ -25,6 +25,8 @@ from hpsop_core.quantities import (
 _ROOM_FOR_NAMES = 4
 _CONDITIONS_APART = 2
 _PLAIN_CHANGE = {CONSTRAINT_GROUP}
+# a percentage of a percentage says nothing
+_PLAIN_KEYS = {"blades", "lcb"}
 
 
 def headline(shown: Shown) -> Markup:
@@ -66,7 +68,7 @@ def comparison_table(initial: Shown | None, selected: Shown | None, conditions: 
         if quantity.group != group:
             group = quantity.group
             rows.append(fill('<tr class="group"><td colspan="4">{}</td></tr>', group))
-        plain = group in _PLAIN_CHANGE or quantity.key == "blades"
+        plain = group in _PLAIN_CHANGE or quantity.key in _PLAIN_KEYS
         change = change_text(first, second, quantity.decimals, relative=not plain)
         rows.append(
             fill(
@@ -112,7 +114,7 @@ def many_table(initials: Mapping[int, Shown | None], designs: Sequence[Shown], c
             group = quantity.group
             rows.append(fill('<tr class="group"><td colspan="{}">{}</td></tr>', 2 + len(designs), group))
         cells = []
-        plain = group in _PLAIN_CHANGE or quantity.key == "blades"
+        plain = group in _PLAIN_CHANGE or quantity.key in _PLAIN_KEYS
         for item, value in zip(designs, values, strict=True):
             own = initials.get(item.evaluation.level)
             base = quantity.value(own.evaluation) if own else None

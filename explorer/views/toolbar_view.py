@@ -5,9 +5,9 @@ from __future__ import annotations
 import viser
 
 from explorer.scene.camera import PRESETS, TITLES
-from explorer.server.bridge import PageEvent, overlay
+from explorer.server.bridge import PageEvent, link_box, overlay
 from explorer.server.html_slot import Slot
-from explorer.services.designs import Designs
+from explorer.services.services import Services
 from explorer.state.session import Session
 from explorer.state.shown import Shown, file_name
 from explorer.views.chips import NOTHING, chip, chips, soft
@@ -35,17 +35,20 @@ _SWITCHES = (
 class ToolbarView:
     """Camera, switches, theme, screenshot; and the design's card with legends of what is overlaid."""
 
-    def __init__(self, session: Session, designs: Designs, gui: viser.GuiApi, client: viser.ClientHandle) -> None:
+    def __init__(self, session: Session, services: Services, gui: viser.GuiApi, client: viser.ClientHandle) -> None:
         self._session = session
-        self._designs = designs
+        self._designs, self._runs = services.designs, services.runs
         self._client = client
         self._bar = Slot(gui)
         self._card = Slot(gui)
-        session.hub.on(("options", "selection"), self.draw)
+        self._link, self._links = Slot(gui), 0
+        session.hub.on(("options", "selection", "run"), self.draw)
         session.hub.on(("selection", "options", "pins", "legend"), self.draw_card)
         session.gestures.on("act", "switch", self._switch)
         session.gestures.on("act", "condition", self._condition)
         session.gestures.on("act", "take_away", self._take_away)
+        session.gestures.on("act", "link", self._show_link)
+        session.gestures.on("act", "report", self._report)
         self.draw()
         self.draw_card()
 
@@ -85,6 +88,8 @@ class ToolbarView:
                 on=options.picture_open,
                 hint="of the screenshot, and its background",
             )
+            + chip("link", "Link", hint="an address that opens this run, generation, design, view and pins")
+            + chip("report", "Report", disabled=not self._session.picture.name, hint="the run on one HTML page")
             + chip("take_away", "CAD files", hint="the shown design as Rhino, DXF, STL, GLB, CSV and JSON in one ZIP")
         )
         self._bar.show(
@@ -192,6 +197,22 @@ class ToolbarView:
         shown = self._session.selected
         if shown is not None and event.arg.isdecimal() and int(event.arg) < len(shown.evaluation.conditions):
             self._session.set_options(condition=int(event.arg))
+
+    def _show_link(self, _event: PageEvent) -> None:
+        self._links += 1
+        self._link.show(link_box(self._session.link().query(), self._links))
+
+    def _report(self, _event: PageEvent) -> None:
+        self._session.notify("Writing the report", "the download begins in some seconds", "green")
+        self._session.slow.latest("report", self._send_report)
+
+    def _send_report(self) -> None:
+        try:
+            name, page = self._runs.report()
+        except HpsopError as error:
+            self._session.notify("No report", str(error), "red")
+            return
+        self._client.send_file_download(name, page, save_immediately=True)
 
     def _take_away(self, _event: PageEvent) -> None:
         shown = self._session.selected

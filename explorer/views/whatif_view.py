@@ -11,15 +11,16 @@ import viser
 from explorer.server.html_slot import Slot
 from explorer.server.widgets import set_value
 from explorer.services.services import Services
+from explorer.state.history import History
 from explorer.state.session import Session
 from explorer.state.shown import Shown
-from explorer.views.chips import NOTHING, box, soft
+from explorer.views.chips import NOTHING, box, chip, chips, soft
 from explorer.views.on_display import select_design
 from explorer.views.settings_fields import slider_decimals, standing_hint, standing_label, variable_label
 from explorer.views.tables import headline, warnings_html
 from hpsop_core.case.variables import VARIABLE_TABLE, DesignVariables
 from hpsop_core.errors import HpsopError, InputError
-from hpsop_core.markup import fill, joined
+from hpsop_core.markup import Markup, fill, joined
 from hpsop_core.quantities import number_text
 
 _LEVEL2 = "Evaluate at level 2"
@@ -33,7 +34,9 @@ class WhatIfView:
         self._designs, self._runs = services.designs, services.runs
         self._answered: list[float] = []
         self._own: Shown | None = None
+        self._history: History[Shown] = History()
         self._html = Slot(gui)
+        self._steps = Slot(gui)
         self._sliders: dict[str, Any] = {}
         self._initial = session.picture.case.initial.variables
         for key, variable in VARIABLE_TABLE.items():
@@ -47,8 +50,10 @@ class WhatIfView:
         self._add = gui.add_button("Add to the run's archive as a hand-made design", color="gray")
         self._level2.on_click(self._on_level2)
         self._add.on_click(self._on_add)
+        session.gestures.on("act", "whatif_turn", lambda event: self._turn(event.arg == "back"))
         session.hub.on(("selection",), self._follow)
         session.hub.on(("selection", "run"), self._show_buttons)
+        session.hub.on(("left",), self._history.clear)
         self._follow()
         self._show_buttons()
 
@@ -101,9 +106,18 @@ class WhatIfView:
                 slider.label, slider.hint = label, standing_hint(variable, side)
 
     def _draw(self, shown: Shown) -> None:
+        history = self._history
+        self._steps.show(
+            box(
+                chips(
+                    chip("whatif_turn", "↶ undo", "back", disabled=not history.can_undo, hint="the design before"),
+                    chip("whatif_turn", "↷ redo", "again", disabled=not history.can_redo, hint="take undo back"),
+                )
+            )
+        )
         if shown.kind != "whatif":
             self._html.show(
-                box(
+                _answer(
                     fill("<p>{}</p>", headline(shown)),
                     soft(
                         "Move a slider: level 1 answers at once, and the hull, the propeller, the curves and the table "
@@ -129,7 +143,7 @@ class WhatIfView:
         recent = [moment for moment in self._answered if moment > time.monotonic() - 2.0]
         rate = soft(f"{len(recent) / 2.0:.0f} answers a second") if len(recent) > 4 else NOTHING
         self._html.show(
-            box(
+            _answer(
                 fill("<p>{}</p>", headline(shown)),
                 warnings_html(shown),
                 fill("<div class='facts'>{}</div>", facts),
@@ -152,8 +166,23 @@ class WhatIfView:
             self._session.notify("What-if", str(error), "yellow")
             return
         self._answered = [*self._answered[-40:], time.monotonic()]
+        before = self._session.selected
+        if before is not None and before.key != shown.key:
+            values, old = shown.evaluation.variables.as_dict(), before.evaluation.variables.as_dict()
+            self._history.record(before, frozenset(name for name in values if values[name] != old[name]))
         self._own = shown
         self._session.select(shown)
+
+    def _turn(self, back: bool) -> None:
+        """The design before the last move of a slider, or the one that was left by that."""
+        present = self._session.selected
+        if present is None:
+            return
+        found = self._history.undo(present) if back else self._history.redo(present)
+        if found is not None:
+            # the sliders follow it, as they follow any selection
+            self._own = None
+            self._session.select(found)
 
     def _on_level2(self, _event: viser.GuiEvent[Any]) -> None:
         def work() -> None:
@@ -188,3 +217,8 @@ class WhatIfView:
         disabled = not (own and self._runs.can_add_by_hand())
         if self._add.disabled != disabled:
             self._add.disabled = disabled
+
+
+def _answer(*parts: Markup) -> Markup:
+    """What stays in sight while the sliders below are scrolled."""
+    return fill('<div class="hp answer">{}</div>', joined(parts))

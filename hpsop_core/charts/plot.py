@@ -5,6 +5,7 @@ from __future__ import annotations
 import copy
 import csv
 import io
+import json
 import math
 from dataclasses import dataclass
 
@@ -21,6 +22,8 @@ from hpsop_core.typing_aliases import Array
 
 _CROWD = 1500
 _NAMESPACE = "http://www.w3.org/2000/svg"
+_MOST_READ, _MOST_NAMED = 400, 24
+"""Points of a line, and lines, that a pointer reads: a crowd is not read."""
 _PLAIN_LETTERS = 11.0
 """Margins are told for letters of this size."""
 
@@ -295,12 +298,13 @@ class Plot:
         self._numbers = False
 
     # ---- out ---------------------------------------------------------------------------------------------------------
-    def svg(self, name: str, attributes: str = "") -> Markup:
+    def svg(self, name: str, attributes: str = "", readable: bool = False) -> Markup:
         """The chart as an element of a page that has the ``style_sheet``.
 
         Args:
             name: one word, unique on the page: for the browser's events and the ids within.
             attributes: more of the element's, as the programmer wrote them.
+            readable: the numbers of its named lines come with it, for the page to show at the pointer.
         """
         area = self.area
         keys, below = frame.legend(
@@ -316,7 +320,7 @@ class Plot:
             name=name,
             place=f"{area.left:g},{area.top:g},{area.width:g},{area.height:g}",
             limits=limits,
-            attributes=Markup(attributes),
+            attributes=Markup(attributes) + (self._readings() if readable and self._numbers else Markup("")),
             width=area.picture_width,
             height=area.picture_height + below,
             label=f"{symbol_plain(self.y.title)} against {symbol_plain(self.x.title)}",
@@ -328,6 +332,20 @@ class Plot:
             over=joined(self._over),
             keys=keys,
         )  # fmt: skip
+
+    def _readings(self) -> Markup:
+        """The numbers of named lines as JSON in an attribute, of so many digits as a screen can show."""
+        named = [item for item in self.series if item.name and 1 < len(item.x) <= _MOST_READ]
+        content = {
+            "x": symbol_plain(self.x.title),
+            "y": symbol_plain(self.y.title),
+            "y2": symbol_plain(self.second.title) if self.second is not None else "",
+            "series": [
+                {"name": item.name, "second": item.second, "x": _digits(item.x), "y": _digits(item.y)}
+                for item in named[:_MOST_NAMED]
+            ],
+        }
+        return fill(' data-values="{}"', json.dumps(content, separators=(",", ":")))
 
     def file_svg(self, name: str, style: Style = PRINT) -> str:
         """The chart as a whole SVG file: XML with its namespace, size and style, nothing to fetch.
@@ -367,6 +385,10 @@ class Plot:
 
 def _widest(axis: Axis, style: Style) -> float:
     return max((text_width(text, style.letters) for _, text in axis.ticks()), default=0.0)
+
+
+def _digits(values: Array) -> list[float | None]:
+    return [float(f"{value:.5g}") if math.isfinite(value) else None for value in values.tolist()]
 
 
 def _title(text: str) -> Markup:

@@ -134,6 +134,8 @@ def style_sheet(style: Style) -> str:
         (" .dots.infeasible", "opacity:.35"),
         # paler than the front of the level: a point of the archive is only ever better than its own level's
         *((f" .dots.archive.{name}", f"stroke:{colour[name]};stroke-opacity:.45") for name in ("level1", "level2")),
+        # of a learnt surface: there, but not solved
+        (" .dots.archive.predicted", f"stroke:{colour['archive']};stroke-opacity:.4"),
         (" .line.required", "stroke-dasharray:2 3;stroke-width:1.2;opacity:.75"),
         (" .dash", "stroke-dasharray:6 3"),
         (" .dot", "stroke-dasharray:1.5 3"),

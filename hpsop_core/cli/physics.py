@@ -129,7 +129,8 @@ def print_evaluation(result: Evaluation) -> None:
     print(
         f"hull: Lpp {hull.length:.2f} m, B {hull.breadth:.2f} m, d {hull.draft:.2f} m, "
         f"CB {hull.block_coefficient:.4f}, volume {hull.displaced_volume:,.0f} m3, S {hull.wetted_surface:,.0f} m2, "
-        f"LCB {hull.longitudinal_centre_of_buoyancy:.2f} m from AP"
+        f"LCB {100.0 * (hull.longitudinal_centre_of_buoyancy / hull.length - 0.5):+.2f} % of Lpp from midship "
+        f"({hull.longitudinal_centre_of_buoyancy:.2f} m from AP)"
     )
     print(
         f"propeller: D {own.diameter:.3f} m, Z {own.blade_count}, P/D {own.pitch_diameter_ratio_07R:.4f} at 0.7 R, "

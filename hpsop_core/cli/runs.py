@@ -129,7 +129,7 @@ def _show_design(run: RunReader, arguments: argparse.Namespace) -> None:
 
 
 def _show_designs(run: RunReader, arguments: argparse.Namespace, designs: Sequence[DesignRecord]) -> None:
-    generation = run.generation(arguments.generation)
+    generation, front = run.generation(arguments.generation), run.known_front(arguments.generation)
     initial = run.initial(1 if generation is None else generation.level)
     bounds = run.case.bounds
     families, narrow = front_families(designs)
@@ -142,25 +142,29 @@ def _show_designs(run: RunReader, arguments: argparse.Namespace, designs: Sequen
                 {**record.summary(), "active_bounds": bounds.active(record.evaluation.variables), "family": family}
                 for record, family in zip(designs, families, strict=True)
             ],
-            "compromise": None if generation is None else generation.compromise,
-            "knee": None if generation is None else generation.knee,
+            "compromise": None if front is None else front.compromise,
+            "knee": None if front is None else front.knee,
             "initial": {**initial.summary(), "active_bounds": bounds.active(initial.evaluation.variables)},
         }
         if generation is not None:
-            document |= {"hypervolume": generation.hypervolume, "feasible_share": generation.feasible_share}
+            document["feasible_share"] = generation.feasible_share
         if generation is not None and not arguments.front:
-            document |= dataclasses.asdict(generation)
+            document |= dataclasses.asdict(generation) | {"population_front": generation.front}
+        if front is not None:
+            document |= {"hypervolume": front.hypervolume, "compromise": front.compromise, "knee": front.knee}
+            if not arguments.front:
+                document |= {"front": front.ids, "spread": front.spread}
         print_json(document)
         return
-    if generation is None:
+    if generation is None or front is None:
         print("no generation is finished yet")
         return
     what = f"front of {len(designs)}" if arguments.front else f"population of {len(designs)}"
-    print(f"generation {generation.number}, level {generation.level}: {what}, hypervolume {generation.hypervolume:.5f}")
+    print(f"generation {generation.number}, level {generation.level}: {what}, hypervolume {front.hypervolume:.5f}")
     space = run.case.bounds.as_dict()
     free = [name for name, (lower, upper) in space.items() if lower < upper]
     header = ["id", "", run.case.objectives.first, run.case.objectives.second, *free, "feasible", "family"]
-    marks = {generation.knee: "knee", generation.compromise: "compromise"}
+    marks = {front.knee: "knee", front.compromise: "compromise"}
     rows = [
         [*_row(run.case, record, marks.get(record.id, ""), free), str(family)]
         for record, family in zip(designs, families, strict=True)

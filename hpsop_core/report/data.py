@@ -50,7 +50,7 @@ class ReportData:
         run: the run.
         generations: finished ones.
         initial: at the last generation's level; None while it is not evaluated.
-        front: of the last generation, ascending in f1.
+        front: of everything that the last generation's level has solved, ascending in f1.
         compromise, knee: None where the front is empty.
     """
 
@@ -65,8 +65,8 @@ class ReportData:
     def of(cls, run: RunReader) -> ReportData:
         """The run as it is now."""
         generations = run.generations()
-        last = generations[-1] if generations else None
-        front = tuple(with_errors(run.case, record) for record in run.designs(last.front)) if last is not None else ()
+        last, known = (generations[-1] if generations else None), run.known_front()
+        front = tuple(with_errors(run.case, record) for record in run.designs(known.ids if known is not None else ()))
         by_id = {record.id: record for record in front}
         try:
             initial = with_errors(run.case, run.initial(1 if last is None else last.level))
@@ -77,8 +77,8 @@ class ReportData:
             generations=generations,
             initial=initial,
             front=front,
-            compromise=None if last is None or last.compromise is None else by_id[last.compromise],
-            knee=None if last is None or last.knee is None else by_id[last.knee],
+            compromise=None if known is None or known.compromise is None else by_id[known.compromise],
+            knee=None if known is None or known.knee is None else by_id[known.knee],
         )
 
     @property

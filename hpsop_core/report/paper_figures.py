@@ -29,7 +29,7 @@ ResistanceLine = tuple[Look, tuple[ResistancePoint, ...], Evaluation]
 def evolution_figure(data: ReportData, published: Sequence[Published] = ()) -> Plot:
     """Figure 5: the fronts of several generations of each level, the last one as "front"."""
     fronts: list[Front] = []
-    generations = [item for item in data.generations if item.front]
+    generations = [item for item in data.run.known_fronts() if item.ids]
     for level in LEVEL_NUMBERS:
         own = [item for item in generations if item.level == level]
         if not own:
@@ -39,7 +39,7 @@ def evolution_figure(data: ReportData, published: Sequence[Published] = ()) -> P
             item = own[place]
             points = [
                 (float(record.evaluation.objectives["f1"] or 0.0), float(record.evaluation.objectives["f2"] or 0.0))
-                for record in data.run.designs(item.front)
+                for record in data.run.designs(item.ids)
             ]
             last = item is generations[-1]
             # earlier generations are paler

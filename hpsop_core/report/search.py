@@ -20,6 +20,11 @@ from hpsop_core.runs.reader import RunReader
 from hpsop_core.runs.records import DesignRecord, front_families
 from hpsop_core.typing_aliases import Array
 
+_PREDICTED = (
+    " Pale points were predicted by a learnt surface and not solved; some of them lie better than the front, because "
+    "the best of many predictions is too good by its error: a front holds solved designs."
+)
+
 
 def search_chapter(data: ReportData) -> Markup:
     """Everything evaluated, how the search went on, and its fronts by generation."""
@@ -33,13 +38,14 @@ def search_chapter(data: ReportData) -> Markup:
             "pareto",
             f"All {total} designs that could be computed; both objectives are minimised. Each level is normalised by "
             "the initial design at that level, so points of different levels compare only roughly. Designs far off are "
-            "left out of the picture. ×n: a family of n designs that the error of their numbers cannot tell apart.",
+            "left out of the picture. ×n: a family of n designs that the error of their numbers cannot tell apart."
+            + (_PREDICTED if any(cloud.css == "archive predicted" for cloud in clouds) else ""),
         ),
         chart_html(
             convergence_chart(
                 [item.number for item in data.generations],
                 [item.level for item in data.generations],
-                [item.hypervolume for item in data.generations],
+                [item.hypervolume for item in data.run.known_fronts()],
                 last.number,
                 SHEET,
                 [item.feasible_share for item in data.generations],
@@ -91,13 +97,15 @@ def archive_clouds(run: RunReader) -> tuple[list[Cloud], int]:
 
     made = [cloud([p.objectives for p in points if not p.feasible], "infeasible", "infeasible")]
     for level in sorted({point.level for point in points}):
-        own = [p.objectives for p in points if p.feasible and p.level == level]
+        own = [p.objectives for p in points if p.feasible and p.level == level and not p.predicted]
         made.append(cloud(own, f"level{level}", f"level {level}, feasible"))
+    predicted = [p.objectives for p in points if p.feasible and p.predicted]
+    made.insert(1, cloud(predicted, "archive predicted", "predicted, not solved"))
     return [item for item in made if len(item.points)], len(points)
 
 
 def _evolution(data: ReportData) -> Markup:
-    if not any(item.front for item in data.generations):
+    if not data.front:
         return Markup("")
     return chart_html(
         evolution_figure(data),

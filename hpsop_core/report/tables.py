@@ -68,7 +68,7 @@ def _change(quantity: Quantity, initial: Evaluation, other: Evaluation) -> Marku
     before, after = quantity.value(initial), quantity.value(other)
     if before is None or after is None:
         return Markup("")
-    plain = quantity.key == "blades" or quantity.group == CONSTRAINT_GROUP
+    plain = quantity.key in ("blades", "lcb") or quantity.group == CONSTRAINT_GROUP
     if plain or any(quantity.key.startswith(name) for name in _ONLY_DIFFERENCES):
         words = change_text(before, after, quantity.decimals, relative=False)
     else:

@@ -41,7 +41,7 @@ def own_page_html(data: ReportData, made: Sequence[Table]) -> str:
 
     level = f"level {data.level or 1}"
     fronts = Markup("")
-    if any(item.front for item in data.generations):
+    if data.front:
         fronts = drawn(
             5,
             "Fronts of several generations (blue: level 1, orange: level 2, green: the last). Each level is normalised "

@@ -2,7 +2,8 @@
 
 A file for a thought. The run file: ``store`` (as its writer sees it), ``reader`` (as everyone else does), ``content``
 (its records), ``schema`` (its tables), ``migrations`` (from older tables), ``connections``, ``lock``, ``checksums``
-(damage is found), ``records``, ``packing`` (rows of few bytes), ``ship`` (an own hull's and propeller's files aboard).
+(damage is found), ``records``, ``fronts`` (the best of everything solved), ``packing`` (rows of few bytes), ``ship``
+(an own hull's and propeller's files aboard).
 Where evaluations run: ``workers`` (what is asked of such a place), ``executor`` (local processes), ``dask_workers`` (a
 cluster), ``tasks`` (what a worker does), ``preload`` (what it has imported before it starts), ``batch`` (evaluating a
 generation on workers that may die). The run: ``replay`` (the loop, and why resuming is the same loop), ``ledger``

@@ -313,10 +313,14 @@ def proportional_level1(case: Case, generations: int) -> int:
 def front_designs(run_path: str | Path, generation: int | None = None) -> tuple[DesignVariables, ...]:
     """The designs of an old run's front, to seed a new one, with other bounds if you like.
 
+    That of its population: crowding has spread these, and they are no more than a first sample has places.
+
     Raises:
         InputError: no such run.
     """
-    return tuple(record.evaluation.variables for record in open_run(run_path).front(generation))
+    run = open_run(run_path)
+    found = run.generation(generation)
+    return tuple(record.evaluation.variables for record in run.designs(found.front if found is not None else ()))
 
 
 def optimize(

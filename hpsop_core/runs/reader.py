@@ -21,6 +21,7 @@ from hpsop_core.optimization.generation import Generation
 from hpsop_core.runs.checksums import DamagedRunError, damage_told
 from hpsop_core.runs.connections import connect_reader, log_path, real_path
 from hpsop_core.runs.content import RunContent
+from hpsop_core.runs.fronts import FrontHistory, KnownFront
 from hpsop_core.runs.lock import is_being_written
 from hpsop_core.runs.records import (
     ArchivePoint,
@@ -67,6 +68,8 @@ class RunReader:
         self._real = real_path(self.path)
         self._designs: dict[int, DesignRecord] = {}
         self._generations: dict[int, GenerationRecord] = {}
+        self._points: dict[int, ArchivePoint] = {}
+        self._fronts = FrontHistory(self._points)
         self._status: os.stat_result | None = None
         self._known_errors: dict[str, dict[str, float]] = {}
         self._errors_of: tuple[int, int] | None = None
@@ -233,13 +236,14 @@ class RunReader:
         }
         if settings.surface:
             result["surface"] = _surface_summary(values, searched)
-        if last is not None:
-            result["hypervolume"] = last.hypervolume
-            result["spread"] = last.spread
+        front = self.known_front()
+        if last is not None and front is not None:
+            result["hypervolume"] = front.hypervolume
+            result["spread"] = front.spread
             result["feasible_share"] = last.feasible_share
-            result["front_size"] = len(last.front)
-            result["compromise"] = last.compromise
-            result["knee"] = last.knee
+            result["front_size"] = len(front.ids)
+            result["compromise"] = front.compromise
+            result["knee"] = front.knee
         return result
 
     # -- generations -----------------------------------------------------------------------------------------------
@@ -336,7 +340,8 @@ class RunReader:
         last = self.generation(generation)
         if name == "initial":
             return self.initial(1 if last is None else last.level)
-        number = None if last is None else {"compromise": last.compromise, "knee": last.knee}.get(name)
+        front = self.known_front(generation)
+        number = None if front is None else {"compromise": front.compromise, "knee": front.knee}.get(name)
         if number is None:
             raise InputError(f"{self.path}: has no {name} design yet: no feasible design stands on its front")
         return self.designs([number])[0]
@@ -355,10 +360,35 @@ class RunReader:
             raise NotEvaluatedError(f"{self.path}: its initial design is not evaluated yet; let the run go on")
         return self.designs([int(row[0])])[0]
 
-    def front(self, generation: int | None = None) -> tuple[DesignRecord, ...]:
-        """The Pareto front of a generation (the last one by default), ascending in f1; empty while there is none."""
+    def known_fronts(self) -> tuple[KnownFront, ...]:
+        """The front of every generation finished, in order; see ``fronts``."""
+        finished = self.generations(after=len(self._fronts.fronts))
+        if finished:
+            news = self.archive(after=max(self._points, default=0))
+            self._points.update((point.id, point) for point in news if point.generation <= finished[-1].number)
+            for generation in finished:
+                if any(number not in self._points for number in (*generation.asked, *generation.members)):
+                    raise DamagedRunError(self.path, f"generation {generation.number} asked a design that is missing")
+                self._fronts.add(generation)
+        return self._fronts.fronts
+
+    def known_front(self, generation: int | None = None) -> KnownFront | None:
+        """The front of a generation; of the last one by default, None while there is none.
+
+        Raises:
+            InputError: a number that is not there.
+        """
         record = self.generation(generation)
-        return () if record is None else self.designs(record.front)
+        return None if record is None else self.known_fronts()[record.number - 1]
+
+    def front(self, generation: int | None = None) -> tuple[DesignRecord, ...]:
+        """The Pareto front of a generation (the last one by default), ascending in f1; empty while there is none.
+
+        It holds the best of everything that the generation's level has solved up to it (see ``fronts``);
+        ``generation().front`` is that of the population alone.
+        """
+        known = self.known_front(generation)
+        return () if known is None else self.designs(known.ids)
 
     def members(self, generation: int | None = None) -> tuple[DesignRecord, ...]:
         """The population of a generation (the last one by default), best first."""
@@ -409,6 +439,7 @@ class RunReader:
                     if record["status"] == "ok"
                     else None,
                     feasible=bool(record["feasible"]),
+                    predicted=record["surface"] > 0,
                 )
                 for record in records
                 if (record["origin"] == "hand") == by_hand and level in (None, record["level"])

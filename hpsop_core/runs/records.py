@@ -66,6 +66,7 @@ class ArchivePoint:
         id, level, origin, generation: as in ``DesignRecord``.
         objectives: (f1, f2), or None if it failed.
         feasible: every constraint kept.
+        predicted: by a learnt surface, not solved.
     """
 
     id: int
@@ -74,6 +75,7 @@ class ArchivePoint:
     generation: int
     objectives: tuple[float, float] | None
     feasible: bool
+    predicted: bool = False
 
 
 @dataclass(frozen=True)

@@ -10,16 +10,16 @@ from typing import Any
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.levels import TRUTH
-from hpsop_core.optimization.generation import Generation
+from hpsop_core.runs.reader import open_run
 from hpsop_core.runs.records import ERROR_FIELDS, ERRORS_KEY, json_text
 from hpsop_core.runs.schema import initial_id
 from hpsop_core.runs.store import RunStore
 from hpsop_core.runs.tasks import Physics, hydrodynamics
 
 
-def unrefined(store: RunStore, last: Generation) -> dict[int, DesignVariables]:
-    """The designs of a generation's front, and the initial one, whose errors are not known yet, by their ids."""
-    return _unknown(store, (initial_id(TRUTH.number), *last.front))
+def unrefined(store: RunStore, front: Sequence[int]) -> dict[int, DesignVariables]:
+    """The designs of a front, and the initial one, whose errors are not known yet, by their ids."""
+    return _unknown(store, (initial_id(TRUTH.number), *front))
 
 
 def _unknown(store: RunStore, numbers: Sequence[int]) -> dict[int, DesignVariables]:
@@ -82,7 +82,9 @@ def refine_front(
                 f"{path}: has no front of level {TRUTH.number} yet, whose errors could be stated; let it go on"
             )
         basis = (physics or hydrodynamics()).reference_from_dict(json.loads(reference))
-        wanted = unrefined(store, last) if designs is None else _unknown(store, designs)
+        shown = open_run(path).known_front(last.number)
+        front = shown.ids if shown is not None else ()
+        wanted = unrefined(store, front) if designs is None else _unknown(store, designs)
         for done, (number, variables) in enumerate(wanted.items()):
             told(done, len(wanted))
             keep_errors(store, {number: refine(store.case, variables, TRUTH.number, basis).as_dict()})

@@ -166,7 +166,9 @@ class RunDriver:
         last = self._store.generation(generation)
         if self._physics.refine is None or last is None or last.level != TRUTH.number:
             return
-        wanted = unrefined(self._store, last)
+        # of the population: a front of everything solved may be many times that, and each costs seconds; the rest can
+        # be asked for (refine_front)
+        wanted = unrefined(self._store, last.front)
         if not wanted:
             return
         reference = self._reference(TRUTH.number)

@@ -70,19 +70,26 @@ def test_a_resistance_chart_in_knots_compares_at_the_same_speed(case: Case, answ
 
 # ---- fronts ----------------------------------------------------------------------------------------------------------
 def _picture(
-    case: Case, points: list[tuple[float, float]], cavitation: list[float], front: tuple[int, ...]
+    case: Case,
+    points: list[tuple[float, float]],
+    cavitation: list[float],
+    front: tuple[int, ...],
+    predicted: tuple[int, ...] = (),
+    by_hand: tuple[int, ...] = (),
 ) -> RunPicture:
     count = len(points)
+    ids = np.arange(1, count + 1)
     return RunPicture(
         "run.hpsop",
         case,
-        ids=np.arange(1, count + 1),
+        ids=ids,
         level=np.ones(count, dtype=np.int64),
         generation=np.ones(count, dtype=np.int64),
         objectives=np.array(points),
         feasible=np.full(count, True),
         failed=np.full(count, False),
-        by_hand=np.full(count, False),
+        by_hand=np.isin(ids, by_hand),
+        predicted=np.isin(ids, predicted),
         table=np.array(cavitation)[:, None],
         columns=("g_cavitation",),
         generations=(GenerationPicture(1, 1, front, front, 0.1),),
@@ -90,19 +97,24 @@ def _picture(
 
 
 def test_no_design_dominates_a_drawn_front_without_a_word(case: Case):
-    margin = case.optimization.handover_margin
-    points = [(0.9, 0.95), (0.95, 0.9), (0.89, 0.94), (0.94, 0.89), (0.99, 0.99)]
-    said = beyond_fronts(_picture(case, points, [-2 * margin] * 2 + [-0.5 * margin, -2 * margin, -1.0], (1, 2)))
-    assert said.count == 2
+    points = [(0.9, 0.95), (0.95, 0.9), (0.89, 0.94), (0.94, 0.89), (0.88, 0.94), (0.99, 0.99)]
+    said = beyond_fronts(_picture(case, points, [-1.0] * 6, (1, 2), predicted=(3, 6), by_hand=(4,)))
+    assert said.count == 3
     assert said.most == pytest.approx(0.01)
     (reason,) = said.reasons
-    assert "1 within the hand-over margin" in reason and f"{margin:g} of blade area ratio" in reason
-    assert "1 no longer in the population" in reason
+    for words in ("1 predicted by a learnt surface", "1 made by hand", "1 of a generation that is not finished"):
+        assert words in reason
+    assert said.margin == ("", "")
 
 
-def test_nothing_is_said_where_nothing_lies_beyond(case: Case):
+def test_what_the_search_avoids_is_said_where_it_is_on_the_front(case: Case):
+    margin = case.optimization.handover_margin
     points = [(0.9, 0.95), (0.95, 0.9), (0.9, 0.95), (0.91, 0.96)]
-    assert beyond_fronts(_picture(case, points, [-1.0] * 4, (1, 2))).count == 0
+    said = beyond_fronts(_picture(case, points, [-2 * margin, -0.5 * margin, -1.0, -1.0], (1, 2)))
+    # nothing lies beyond this front
+    assert said.count == 0
+    words, why = said.margin
+    assert "1 of the 2 designs on level 1's front" in words and f"{margin:g} of blade area ratio" in why
 
 
 # ---- what "feasible" covers ------------------------------------------------------------------------------------------

@@ -14,10 +14,13 @@ def page(open_page, explorer):
     return open_page(explorer, 1366, 768)
 
 
-def _findings(page) -> list[str]:
+def _findings(page, within: str | None = None) -> list[str]:
     # names are given a moment after a panel appears
-    page.wait_for_timeout(2500)
-    found = Axe().run(page).response["violations"]
+    page.wait_for_function(
+        "() => [...document.querySelectorAll('input, textarea, [role=slider]')]"
+        ".every((node) => node.type === 'hidden' || node.getAttribute('aria-label'))"
+    )
+    found = Axe().run(page, context=within).response["violations"]
     return [
         f"{item['id']}: {node['html'][:120]} {node.get('failureSummary', '')[:200]}"
         for item in found
@@ -28,9 +31,22 @@ def _findings(page) -> list[str]:
 
 def test_no_panel_has_a_serious_finding(page):
     assert _findings(page) == []
-    for tab in ("Charts", "Compare", "What-if", "Your ship", "Case", "Runs"):
+    for tab in ("Table", "Compare", "What-if", "Your ship", "Case", "Runs"):
         choose_tab(page, tab)
         assert _findings(page) == [], tab
+    press(page, "rename_run")
+    page.wait_for_selector("input[data-set=run_name]")
+    press(page, "link")
+    page.wait_for_selector(".hpsop-link:visible")
+    assert _findings(page) == [], "a run's name, and the link"
+    page.keyboard.press("Escape")
+    choose_tab(page, "Charts")
+    assert _findings(page) == [], "Charts"
+    for name in sorted(page.evaluate("[...document.querySelectorAll('[data-act=tab]')].map(node => node.dataset.arg)")):
+        press(page, "tab", name)
+        page.wait_for_selector(f'[data-chart-tab="{name}"]')
+        # what stands around it has been looked at
+        assert _findings(page, "[data-chart-tab]") == [], name
     choose_tab(page, "Design space")
     choose_tab(page, "Design")
 

@@ -21,6 +21,7 @@ from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.rankine import solver as rankine
 from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.optimization.decision import normalised
+from hpsop_core.report.data import ReportData
 from hpsop_core.runs.controller import front_designs
 from hpsop_core.runs.reader import RunReader
 from tests.two_speeds import TWO_SPEEDS
@@ -229,13 +230,39 @@ def test_knee_and_compromise_are_asked_by_their_own_names(run: RunReader) -> Non
     generation = run.generation()
     assert generation is not None
     # A reader that was told of another knee: whichever it is, each name gives its own.
-    other = next(number for number in generation.front if number != generation.compromise)
-    record = run.generation_records()[-1]
-    forged = dataclasses.replace(generation, knee=other)
-    run._generations[generation.number] = dataclasses.replace(record, generation=forged)
+    known = run.known_front()
+    assert known is not None
+    other = next(number for number in known.ids if number != known.compromise)
+    run._fronts._fronts[-1] = dataclasses.replace(known, knee=other)
     assert run.design("knee").id == other
-    assert run.design("compromise").id == generation.compromise
-    run._generations[generation.number] = record
+    assert run.design("compromise").id == known.compromise
+    run._fronts._fronts[-1] = known
+
+
+def test_no_solved_feasible_design_is_better_than_the_front_that_is_shown(
+    run: RunReader, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Command, Python and report name the same designs, and nothing that the run has found dominates them."""
+    archive = run.archive()
+    for known in run.known_fronts():
+        generation = run.generation(known.number)
+        assert generation is not None
+        # ids rise with the generations that asked for them
+        seen = [
+            point for point in archive
+            if point.level == known.level and point.feasible and point.objectives is not None
+            and not point.predicted and point.id <= max(generation.asked)
+        ]  # fmt: skip
+        points = np.array([point.objectives for point in seen]).reshape(-1, 2)
+        beaten = [bool(((points <= p).all(axis=1) & (points < p).any(axis=1)).any()) for p in points]
+        best = {point.objectives for point, worse in zip(seen, beaten, strict=True) if not worse}
+        assert {point.objectives for point in seen if point.id in known.ids} == best
+        assert len(known.ids) == len(best)
+    shown = answer(capsys, "show", str(run.path), "--front")
+    last = run.known_fronts()[-1]
+    assert tuple(design["id"] for design in shown["designs"]) == last.ids
+    assert (shown["hypervolume"], shown["compromise"], shown["knee"]) == (last.hypervolume, last.compromise, last.knee)
+    assert tuple(record.id for record in ReportData.of(run).front) == last.ids
 
 
 def test_an_old_front_takes_places_in_a_new_runs_first_sample(
@@ -246,7 +273,9 @@ def test_an_old_front_takes_places_in_a_new_runs_first_sample(
              "--level1-generations", "1", "--population", "12", "--seed", "9", "--workers", "1"]  # fmt: skip
     assert main(words) == 0
     capsys.readouterr()
-    old: set[DesignVariables] = {record.evaluation.variables for record in run.front()}
+    last = run.generation()
+    assert last is not None
+    old: set[DesignVariables] = {record.evaluation.variables for record in run.designs(last.front)}
     assert old == set(front_designs(run.path))
     sample = {record.evaluation.variables for record in open_run(new).members(1)}
     assert old <= sample

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Sequence
+
 import viser
 
 from explorer.charts.designs_table import designs_csv
@@ -28,7 +30,7 @@ from hpsop_core.charts.frame import Key
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.search import Mark
 from hpsop_core.evaluation.levels import LEVEL_NUMBERS
-from hpsop_core.markup import fill, joined
+from hpsop_core.markup import Markup, fill, joined
 from hpsop_core.quantities import objective_title
 
 
@@ -85,8 +87,10 @@ class ParetoChart:
             keys += [
                 Key("dots", f"archive level{level}", f"archive, level {level}")
                 for level in LEVEL_NUMBERS
-                if bool((picture.feasible & (picture.level == level)).any())
+                if bool((picture.feasible & ~picture.predicted & (picture.level == level)).any())
             ]
+            if picture.predictions:
+                keys.append(Key("dots", "archive predicted", "predicted, not solved"))
         if session.infeasible:
             keys.append(Key("dots", "infeasible", "infeasible"))
         keys.append(Key("square", "initial", "initial"))
@@ -103,6 +107,9 @@ class ParetoChart:
                 f"×n: n designs that the error of their numbers cannot tell apart; {max(names)} such families."
             )
         plot = pareto_chart(picture, self._background[1], self._marks(picture), keys)
+        # both are minimised, and the axes do not say so
+        plot.text(self.limits[0][0], self.limits[1][0], "↙ better", "soft", dx=5, dy=-6)
+        self._hint(plot)
         stars = session.stars
 
         def numbers() -> str:
@@ -112,21 +119,34 @@ class ParetoChart:
         self._html.show(box(plot.svg("pareto", PARETO_GESTURES), words))
 
     def _say_beyond(self, beyond: Beyond) -> None:
-        if not beyond.count:
-            self._words.show(NOTHING)
+        said = []
+        if beyond.count:
+            who = "1 design" if beyond.count == 1 else f"{beyond.count} designs"
+            words = f"{who} better than a drawn front (by {100.0 * beyond.most:.2g} % in both at most)"
+            said.append(_folded(words, beyond.reasons, beyond.count))
+        if beyond.margin[0]:
+            said.append(_folded(beyond.margin[0], beyond.margin[1:], 0))
+        self._words.show(box(*said) if said else NOTHING)
+
+    def _hint(self, plot: Plot) -> None:
+        """Where the selected design lies beyond the chart: a mark at the edge, with its numbers."""
+        selected = self._session.selected
+        f1, f2 = (
+            (None, None) if selected is None else (selected.evaluation.objectives.get(name) for name in ("f1", "f2"))
+        )
+        if selected is None or f1 is None or f2 is None:
             return
-        who = "1 design" if beyond.count == 1 else f"{beyond.count} designs"
-        self._words.show(
-            box(
-                fill(
-                    '<details class="soft" data-beyond="{}"><summary>{} of the archive better than a drawn front '
-                    "(by {:.2g} % in both at most): why?</summary>{}</details>",
-                    beyond.count,
-                    who,
-                    100.0 * beyond.most,
-                    joined(fill("<p>{}</p>", reason) for reason in beyond.reasons),
-                )
-            )
+        (x0, x1), (y0, y1) = self.limits
+        x, y = _edge(f1, (x0, x1)), _edge(f2, (y0, y1))
+        if (x, y) == (f1, f2):
+            return
+        plot.mark(
+            x, y, "diamond", 6.0, "selected", title="the selected design lies beyond the chart; a wheel zooms out"
+        )
+        left = x > 0.5 * (x0 + x1)
+        words = f"{selected.label} beyond: f₁ {f1:.3f}, f₂ {f2:.3f}"
+        plot.text(
+            x, y, words, "selected", "end" if left else "start", -9 if left else 9, 12 if y > 0.5 * (y0 + y1) else -6
         )
 
     def _height(self) -> float:
@@ -141,6 +161,19 @@ class ParetoChart:
         if selected is not None:
             marks.append(_mark(picture, selected, "ring", 8.0, "selected", f"selected: {selected.label}"))
         return [mark for mark in marks if mark is not None]
+
+
+def _edge(value: float, limits: tuple[float, float]) -> float:
+    return min(max(value, limits[0]), limits[1])
+
+
+def _folded(words: str, reasons: Sequence[str], count: int) -> Markup:
+    return fill(
+        '<details class="soft" data-beyond="{}"><summary>{}: why?</summary>{}</details>',
+        count,
+        words,
+        joined(fill("<p>{}</p>", reason) for reason in reasons),
+    )
 
 
 def _same(first: tuple[object, ...], second: tuple[object, ...]) -> bool:

@@ -15,6 +15,7 @@ from explorer.views.chips import NOTHING, soft
 from explorer.views.on_display import select_design
 from explorer.views.pareto.chart import ParetoChart
 from explorer.views.tables import design_card
+from explorer.views.zooming import Zooming
 from hpsop_core.markup import Markup
 
 # a click so near to the initial design's mark means it, px
@@ -37,17 +38,14 @@ class ParetoPicking:
         self._chart = chart
         self._serial = 0
         self._hovered: tuple[int, ...] = ()
-        self._panned: tuple[float, Limits] | None = None
         self._tip = Slot(gui)
         for kind, handler in (
             ("click", self._click),
             ("hover", self._hover),
-            ("zoom", self._zoom),
-            ("pan", self._pan),
             ("box", self._box),
-            ("reset", self._reset),
         ):
             session.gestures.on(kind, "pareto", handler)
+        Zooming(session, "pareto", lambda: chart.limits, _seen)
         session.gestures.on("key", "", self._key)
         for name, action in (("layer", self._layer), ("unfilter", self._unfilter), ("unzoom", self._reset)):
             session.gestures.on("act", name, action)
@@ -127,30 +125,6 @@ class ParetoPicking:
         select_design(session, self._designs, order[min(max(target, 0), len(order) - 1)])
 
     # ---- what is seen ----------------------------------------------------------------------------------------------
-    def _zoom(self, event: PageEvent) -> None:
-        fx, fy, factor = (event.numbers.get(name) for name in ("fx", "fy", "factor"))
-        if fx is None or fy is None or factor is None or not 0.2 < factor < 5.0:
-            return
-        # what stays in place is a fraction of the plot: several turns of the wheel may come before it is redrawn
-        (x0, x1), (y0, y1) = self._chart.limits
-        x, y = x0 + fx * (x1 - x0), y0 + fy * (y1 - y0)
-        limits = ((x + (x0 - x) * factor, x + (x1 - x) * factor), (y + (y0 - y) * factor, y + (y1 - y) * factor))
-        if _seen(limits):
-            self._chart.limits = limits
-            self._session.zoom("pareto", limits)
-
-    def _pan(self, event: PageEvent) -> None:
-        fx, fy, drag = (event.numbers.get(name) for name in ("fx", "fy", "drag"))
-        if fx is None or fy is None or drag is None or not max(abs(fx), abs(fy)) < 100.0:
-            return
-        if self._panned is None or self._panned[0] != drag:
-            self._panned = (drag, self._chart.limits)
-        (x0, x1), (y0, y1) = self._panned[1]
-        dx, dy = fx * (x1 - x0), fy * (y1 - y0)
-        limits = ((x0 - dx, x1 - dx), (y0 - dy, y1 - dy))
-        if _seen(limits):
-            self._session.zoom("pareto", limits)
-
     def _box(self, event: PageEvent) -> None:
         x0, x1, y0, y1 = (event.numbers.get(name) for name in ("x0", "x1", "y0", "y1"))
         if x0 is None or x1 is None or y0 is None or y1 is None:

@@ -28,8 +28,13 @@ class Scrubber:
         self._controls = Slot(gui)
         self._words = Slot(gui)
         self._slider.on_update(self._on_slider)
-        session.hub.on(("run", "scrub", "filter", "zoom pareto", "layers", "play"), self.draw)
-        for name, action in (("step", self._step), ("play", self._play), ("follow", self._follow)):
+        session.hub.on(("run", "scrub", "filter", "zoom pareto", "layers", "play", "follow"), self.draw)
+        for name, action in (
+            ("step", self._step),
+            ("play", self._play),
+            ("follow", self._follow),
+            ("follow_best", self._follow_best),
+        ):
             session.gestures.on("act", name, action)
         session.on_close(self._stop)
         self.draw()
@@ -55,6 +60,12 @@ class Scrubber:
                     ),
                     chip("step", "›", "1", disabled=count == 0, hint="next generation"),
                     chip("follow", "newest", on=session.scrubbed is None, hint="follow the run"),
+                    chip(
+                        "follow_best",
+                        "follow best",
+                        on=session.follow,
+                        hint="the selection goes on to the newest compromise until you select another design",
+                    ),
                     GAP,
                     chip("layer", "archive", "archive", on=session.archive, hint="every feasible design evaluated"),
                     chip(
@@ -105,6 +116,9 @@ class Scrubber:
     def _follow(self, _event: PageEvent) -> None:
         self._stop()
         self._session.scrub(None)
+
+    def _follow_best(self, _event: PageEvent) -> None:
+        self._session.set_follow(not self._session.follow)
 
     # ---- play ------------------------------------------------------------------------------------------------------
     def _play(self, _event: PageEvent) -> None:
