@@ -86,33 +86,53 @@ def own_files(folder: Path) -> None:
     shutil.copy(ROOT / "assets" / "propellers" / "p4119.csv", folder / "blade.csv")
 
 
+class Terminal:
+    """Commands as they are typed, in this process: what they need is imported, compiled and remembered once."""
+
+    def __init__(self, folder: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> None:
+        monkeypatch.chdir(folder)
+        self._capsys = capsys
+
+    def types(self, command: str) -> None:
+        """The command ends well and says something."""
+        from hpsop_core.cli.main import main
+
+        words = command.split()[1:]
+        code = main([*words, *QUICKER.get(words[0], [])])
+        printed = self._capsys.readouterr()
+        assert code == 0 and printed.out, (command, printed.err)
+
+
+@pytest.fixture
+def terminal(tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]) -> Terminal:
+    return Terminal(tmp_path, monkeypatch, capsys)
+
+
 def commands_of(page: str) -> list[str]:
     text = (ROOT / page).read_text(encoding="utf-8")
     lines = [line.split("#")[0].strip() for line in text.splitlines()]
     return [line for line in lines if line.startswith("hpsop ")]
 
 
-def test_commands_of_the_readme(tmp_path: Path) -> None:
+def test_commands_of_the_readme(tmp_path: Path, terminal: Terminal) -> None:
     from hpsop_core.cli.main import build_parser
 
     own_files(tmp_path)
     commands = commands_of("README.md")
     assert len(commands) >= 8
     for command in commands:
-        words = command.split()[1:]
-        assert callable(build_parser().parse_args(words).handler)
+        assert callable(build_parser().parse_args(command.split()[1:]).handler)
         if not command.startswith(LONG):
-            assert run(["-m", "hpsop_core.cli", *words, *QUICKER.get(words[0], [])], tmp_path)
+            terminal.types(command)
     assert (tmp_path / "report.html").stat().st_size > 10_000
 
 
-def test_commands_of_the_guide_to_own_ships(tmp_path: Path) -> None:
+def test_commands_of_the_guide_to_own_ships(tmp_path: Path, terminal: Terminal) -> None:
     own_files(tmp_path)
     commands = commands_of("docs/bring-your-ship.md")
     assert len(commands) >= 4
     for command in commands:
-        words = command.split()[1:]
-        assert run(["-m", "hpsop_core.cli", *words, *QUICKER.get(words[0], [])], tmp_path)
+        terminal.types(command)
     assert (tmp_path / "ship.png").read_bytes().startswith(b"\x89PNG") and (tmp_path / "ship.toml").is_file()
 
 
