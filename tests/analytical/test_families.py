@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import re
-from types import SimpleNamespace
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
@@ -157,32 +157,18 @@ def test_the_engine_diagram_draws_the_layout_and_the_points() -> None:
     assert "rating" not in engine_chart(None, [(Look("initial", "initial"), result)], Sheet(500.0, 300.0)).svg("engine")
 
 
-class _Gui:
-    """As much of viser's interface as the what-if uses."""
-
-    def add_slider(self, label: str, low: float, high: float, step: float, value: float, hint: str) -> SimpleNamespace:
-        return SimpleNamespace(
-            label=label, min=low, max=high, step=step, value=value, hint=hint, on_update=lambda _call: None
-        )
-
-    def add_button(self, label: str, **_words: str) -> SimpleNamespace:
-        return SimpleNamespace(label=label, disabled=False, on_click=lambda _call: None)
-
-    def add_html(self, content: str) -> SimpleNamespace:
-        return SimpleNamespace(content=content)
+def _slider(label: str, low: float, high: float, step: float, value: float, hint: str) -> Mock:
+    return Mock(label=label, min=low, max=high, step=step, value=value, hint=hint)
 
 
 def test_a_what_if_slider_says_that_its_design_stands_on_a_bound() -> None:
     evaluation = evaluate(CASE)
     assert evaluation.ok
     on = {"draft": "upper", "diameter": "lower"}
-    session = SimpleNamespace(
-        selected=Shown("whatif", dataclasses.replace(evaluation, active_bounds=on)),
-        picture=SimpleNamespace(case=CASE),
-        hub=SimpleNamespace(on=lambda _topics, _call: None),
-    )
-    services = SimpleNamespace(designs=None, runs=SimpleNamespace(can_add_by_hand=lambda: False))
-    view = WhatIfView(session, services, _Gui())  # type: ignore[arg-type]
+    session = Mock(selected=Shown("whatif", dataclasses.replace(evaluation, active_bounds=on)))
+    session.picture.case = CASE
+    gui = Mock(add_slider=_slider)
+    view = WhatIfView(session, Mock(), gui)
     labels = {key: slider.label for key, slider in view._sliders.items()}
     assert labels["draft"] == "d [m] ↑" and labels["diameter"] == "D [m] ↓" and labels["length_to_breadth"] == "L/B"
     assert "this design stands on its upper bound" in view._sliders["draft"].hint
