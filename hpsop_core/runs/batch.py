@@ -10,7 +10,7 @@ from collections import deque
 from collections.abc import Callable, Sequence
 from concurrent.futures import BrokenExecutor, CancelledError, Future
 from dataclasses import dataclass
-from typing import Any
+from typing import Any, TypeAlias
 
 from hpsop_core.case.case import Case
 from hpsop_core.optimization.problem import Candidate
@@ -26,6 +26,10 @@ _DEATHS_ALLOWED = 2
 _TIMEOUTS_ALLOWED = 2
 _QUICK = 0.05  # seconds: evaluations below have a spare one queued behind each; see ``BatchEvaluator._room``
 _RECONNECT_INTERVAL = 2.0  # seconds between tries to reach a cluster that does not answer
+
+
+FinishedFunction: TypeAlias = Callable[[Sequence[tuple[int, Candidate, str]]], None]
+"""Told of results that came in together: id, candidate and the evaluation's JSON text of each."""
 
 
 def reconnect(workers: Workers, control: RunControl, lost: Callable[[str], None], reason: str) -> None:
@@ -111,14 +115,14 @@ class BatchEvaluator:
     def run(
         self,
         tasks: Sequence[tuple[int, Candidate, Any]],
-        finished: Callable[[int, Candidate, str], None],
+        finished: FinishedFunction,
         paused: Callable[[bool], None],
     ) -> bool:
         """Evaluate all.
 
         Args:
             tasks: (id, candidate, reference of its level).
-            finished: called with each result, an evaluation's JSON text, as it comes in.
+            finished: called with what has come in: for each its id, candidate, and the evaluation's JSON text.
             paused: called with True when nothing is under way any more because of a pause, and with False when it is
                 over.
 
@@ -222,7 +226,7 @@ class BatchEvaluator:
             self._queue_again(job)
         self._under_way = {}
 
-    def _collect(self, finished: Callable[[int, Candidate, str], None]) -> None:
+    def _collect(self, finished: FinishedFunction) -> None:
         if not self._under_way:
             return
         concurrent.futures.wait(self._under_way, timeout=_TICK, return_when=concurrent.futures.FIRST_COMPLETED)
@@ -249,7 +253,7 @@ class BatchEvaluator:
                 job.timeouts += 1
                 if job.timeouts >= _TIMEOUTS_ALLOWED:
                     reason = f"took longer than the limit of {self._limit:g} s, twice"
-                    self._fail(job, "time-out", reason, finished)
+                    finished([self._failed(job, "time-out", reason)])
                 else:
                     self._suspects.append(job)
             self._requeue()
@@ -265,9 +269,10 @@ class BatchEvaluator:
                 if job.started is not None:
                     job.started += stalled
 
-    def _take_finished(self, finished: Callable[[int, Candidate, str], None]) -> bool:
-        """Hand out results; True if a worker died."""
+    def _take_finished(self, finished: FinishedFunction) -> bool:
+        """Hand out results, those that have come in together at once; True if a worker died."""
         broken = False
+        results: list[tuple[int, Candidate, str]] = []
         for future in [future for future in self._under_way if future.done()]:
             try:
                 error = future.exception()
@@ -286,34 +291,36 @@ class BatchEvaluator:
                 took = time.monotonic() - job.started
                 self._typical = took if self._typical == math.inf else 0.8 * self._typical + 0.2 * took
             if error is None:
-                finished(job.number, job.candidate, future.result())
+                results.append((job.number, job.candidate, future.result()))
             elif type(error).__name__ == "KilledWorker":
                 # Dask has tried it on several workers already and knows for certain that this one was to blame.
-                self._fail(job, "worker", "its worker processes died", finished)
+                results.append(self._failed(job, "worker", "its worker processes died"))
             else:
                 # SystemExit, or a result that cannot be pickled.
                 text = " ".join(f"{type(error).__name__}: {error}".split())
-                self._fail(job, "worker", text, finished)
+                results.append(self._failed(job, "worker", text))
+        if results:
+            finished(results)
         self._start_clocks()
         return broken
 
-    def _blame(self, finished: Callable[[int, Candidate, str], None]) -> None:
+    def _blame(self, finished: FinishedFunction) -> None:
         for job in sorted(self._under_way.values(), key=lambda job: job.number):
             job.deaths += 1
             if job.alone and job.deaths >= _DEATHS_ALLOWED:
-                self._fail(job, "worker", "its worker process died twice", finished)
+                finished([self._failed(job, "worker", "its worker process died twice")])
             else:
                 self._suspects.append(job)
         self._under_way = {}
         self._workers.rebuild()
 
-    def _fail(self, job: _Job, stage: str, reason: str, finished: Callable[[int, Candidate, str], None]) -> None:
+    def _failed(self, job: _Job, stage: str, reason: str) -> tuple[int, Candidate, str]:
         candidate = job.candidate
         elapsed = 0.0 if job.started is None else time.monotonic() - job.started
         text = failure_text(self._case, candidate.variables, candidate.level, stage, reason, elapsed)
-        finished(job.number, candidate, text)
+        return job.number, candidate, text
 
-    def _drain(self, finished: Callable[[int, Candidate, str], None]) -> None:
+    def _drain(self, finished: FinishedFunction) -> None:
         """The run ends: keep what finishes within a moment, drop the rest."""
         concurrent.futures.wait(self._under_way, timeout=_STOP_GRACE)
         self._take_finished(finished)

@@ -11,7 +11,7 @@ import concurrent.futures
 import dataclasses
 import json
 import time
-from collections.abc import Callable, Mapping
+from collections.abc import Callable, Mapping, Sequence
 from typing import Any, TypeVar
 
 from hpsop_core.errors import HpsopError, InputError
@@ -177,8 +177,8 @@ class RunDriver:
         ]
         refined: dict[int, Mapping[str, Any]] = {}
 
-        def finished(number: int, candidate: Candidate, result: str) -> None:
-            refined[number] = json.loads(result)
+        def finished(results: Sequence[tuple[int, Candidate, str]]) -> None:
+            refined.update((number, json.loads(result)) for number, _, result in results)
 
         def paused(now: bool) -> None:
             self._change_state("paused" if now else "running", "")
@@ -296,9 +296,9 @@ class RunDriver:
         """Evaluate designs and store each as it finishes; returns the seconds spent waiting for people or disks."""
         waited = 0.0
 
-        def finished(number: int, candidate: Candidate, result: str) -> None:
+        def finished(results: Sequence[tuple[int, Candidate, str]]) -> None:
             nonlocal waited
-            waited += self._record(number, candidate, generation, result)
+            waited += self._record(results, generation)
 
         def paused(now: bool) -> None:
             nonlocal waited
@@ -336,31 +336,34 @@ class RunDriver:
             )
             self._keep(lambda: self._store.note(text))
 
-    def _record(self, number: int, candidate: Candidate, generation: int, result: str) -> float:
+    def _record(self, results: Sequence[tuple[int, Candidate, str]], generation: int) -> float:
+        """Keep what came in together; returns the seconds that the file could not be written."""
         started = time.monotonic()
         blocked = False
 
-        def write() -> Outcome:
-            return self._store.record_evaluation(number, candidate, generation, result)
+        def write() -> list[Outcome]:
+            return self._store.record_evaluations(results, generation)
 
         try:
-            outcome = write()
+            outcomes = write()
         except StoreUnwritableError as error:
             blocked = True
-            outcome = self._keep(write, error)
-        self._ledger.record(number, candidate, outcome)
+            outcomes = self._keep(write, error)
         counts = list(self.snapshot.evaluations)
-        counts[LEVELS.index(level_of(candidate.level))] += 1
+        for (number, candidate, _), outcome in zip(results, outcomes, strict=True):
+            self._ledger.record(number, candidate, outcome)
+            counts[LEVELS.index(level_of(candidate.level))] += 1
         self.snapshot = dataclasses.replace(
             self.snapshot,
-            done=self.snapshot.done + 1,
+            done=self.snapshot.done + len(outcomes),
             evaluations=(counts[0], counts[1]),
-            predictions=self.snapshot.predictions + outcome.predicted,
-            failures=self.snapshot.failures + outcome.failed,
+            predictions=self.snapshot.predictions + sum(outcome.predicted for outcome in outcomes),
+            failures=self.snapshot.failures + sum(outcome.failed for outcome in outcomes),
         )
-        if outcome.failed:
-            data = json.loads(result)
-            self._tell("failure", evaluation_id=number, text=f"{data.get('stage', '')}: {data['reason']}")
+        for (number, _, result), outcome in zip(results, outcomes, strict=True):
+            if outcome.failed:
+                data = json.loads(result)
+                self._tell("failure", evaluation_id=number, text=f"{data.get('stage', '')}: {data['reason']}")
         self._progress()
         return time.monotonic() - started if blocked else 0.0
 
@@ -377,7 +380,7 @@ class RunDriver:
                     raise
                 # No generation needs this level; that it cannot be computed is worth a record, not the run.
                 text = failure_text(self._case, variables, level, "reference", str(error), 0.0)
-                self._record(level, candidate, 0, text)
+                self._record([(level, candidate, text)], 0)
             else:
                 self._evaluate([(level, candidate)], 0)
         if self._ledger.outcome(initial_id(level)).failed and planned:

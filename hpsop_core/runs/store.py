@@ -345,12 +345,35 @@ class RunStore:
         Raises:
             StoreUnwritableError: the file cannot be written.
         """
-        data = json.loads(result)
+        return self.record_evaluations([(number, candidate, result)], generation)[0]
+
+    def record_evaluations(self, results: Sequence[tuple[int, Candidate, str]], generation: int) -> list[Outcome]:
+        """Store finished evaluations of the search in one transaction: all of them, or none.
+
+        Args:
+            results: of each its id, what was asked, and the evaluation's JSON text.
+            generation: that asked for them.
+
+        Raises:
+            StoreUnwritableError: the file cannot be written.
+        """
+        outcomes = []
         with self._writing() as connection:
-            variables, origin = candidate.variables, candidate.origin
-            surface = candidate.surface if data.get("predicted") else 0
-            self._insert_evaluation(connection, number, candidate.level, variables, origin, generation, data, surface)
-        return Outcome.from_json(number, data)
+            for number, candidate, result in results:
+                data = json.loads(result)
+                surface = candidate.surface if data.get("predicted") else 0
+                self._insert_evaluation(
+                    connection,
+                    number,
+                    candidate.level,
+                    candidate.variables,
+                    candidate.origin,
+                    generation,
+                    data,
+                    surface,
+                )
+                outcomes.append(Outcome.from_json(number, data))
+        return outcomes
 
     def record_by_hand(self, evaluation: Evaluation) -> int:
         """Store a design that a person made; it never enters the search.
@@ -416,6 +439,7 @@ class RunStore:
                 connection.execute("COMMIT")
             except BaseException as error:
                 self._tally = before
+                self._dictionary = b""  # what this write would have brought is gone with it
                 if connection.in_transaction:
                     with contextlib.suppress(sqlite3.Error):
                         connection.execute("ROLLBACK")

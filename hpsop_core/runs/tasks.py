@@ -98,9 +98,13 @@ def evaluation_task(
     started = time.perf_counter()
     try:
         data = evaluate(case, variables, level, reference).as_dict()
-        fault = _not_a_number(data)
+        fault = _missing(data)
         if not fault:
-            return json_text(data)
+            try:
+                return json_text(data)
+            except ValueError as error:
+                # JSON has no NaN: its writer looks at every number anyway, and only then we look for which it was.
+                fault = _search(data, "") or _one_line(error)
         stage, reason = "check", fault
     except SolverFailure as failure:
         stage, reason = failure.stage, failure.reason
@@ -149,16 +153,17 @@ def _one_line(error: BaseException) -> str:
     return text if isinstance(error, SolverFailure) else f"{name}: {text}" if text else name
 
 
-def _not_a_number(data: dict[str, Any]) -> str:
-    """Where an evaluation holds something that is no finite number, or misses an objective though ok; else ""."""
+def _missing(data: dict[str, Any]) -> str:
+    """Which objective an evaluation misses though ok; else ""."""
     if data["status"] == "ok":
         for name in ("f1", "f2"):
             if data["objectives"].get(name) is None:
                 return f"objectives.{name} is missing"
-    return _search(data, "")
+    return ""
 
 
 def _search(value: Any, path: str) -> str:
+    """Where a document holds something that is no finite number; "" where it does not."""
     if isinstance(value, float) and not math.isfinite(value):
         return f"{path} is {value}"
     if isinstance(value, dict):

@@ -444,3 +444,16 @@ def test_a_finished_file_opens_where_nothing_can_be_written_and_leaves_no_litter
     finally:
         folder.chmod(0o755)
     assert [file.name for file in folder.iterdir()] == ["run.hpsop"]
+
+
+def test_results_that_came_in_together_are_stored_together_or_not_at_all(tmp_path: Path) -> None:
+    store = RunStore(tmp_path / "run.hpsop", CASE)
+    asked = [candidate(14.0 + 0.1 * row) for row in range(3)]
+    store.record_evaluations([(row + 1, asked[row], result(asked[row])) for row in range(2)], 1)
+    with pytest.raises(sqlite3.IntegrityError):
+        # the last one's number is taken
+        store.record_evaluations([(3, asked[2], result(asked[2])), (1, asked[2], result(asked[2]))], 1)
+    assert sorted(store.outcomes()) == [1, 2]
+    store.record_evaluations([(3, asked[2], result(asked[2]))], 1)
+    assert sorted(store.outcomes()) == [1, 2, 3]
+    store.close()
