@@ -107,7 +107,7 @@
   H.connect = function (channelId) {
     if (H.channelId !== channelId) { H.channelId = channelId; H.outbox = []; }
     // a link is followed once: from then on the page goes its own ways, also over a reload
-    H.send({ t: "hello", browser: H.browser, width: innerWidth, height: innerHeight, link: location.search.slice(0, 1500), arg: H.toured() ? "toured" : "" });
+    H.send({ t: "hello", browser: H.browser, width: innerWidth, height: innerHeight, link: location.search.slice(0, 1500), arg: H.toured() || small.matches ? "toured" : "" });
     if (location.search) history.replaceState(null, "", location.pathname);
     place();
     title();
@@ -567,19 +567,18 @@
     }
   }, true);
   function place() {
-    // The 3D view is what the docks leave free: walk in from both sides along the middle line of the window.
+    // the 3D view is what the docks leave free
     const canvas = document.querySelector("canvas");
     if (!canvas) return;
     const box = canvas.getBoundingClientRect();
     let left = box.left, right = box.right;
-    document.querySelectorAll("label[for], .hpsop-root").forEach((node) => {
-      const r = node.getBoundingClientRect();
-      if (r.width === 0) return;
-      const panel = node.closest("[data-hpsop-panel]") || node;
-      const q = panel.getBoundingClientRect();
-      if (q.left < innerWidth / 3 && q.right < innerWidth / 2) left = Math.max(left, q.right + 10);
-      if (q.right > (2 * innerWidth) / 3 && q.left > innerWidth / 2) right = Math.min(right, q.left - 10);
-    });
+    for (const side of ["left", "right"]) {
+      const dock = document.querySelector('[data-dock-region="' + side + '"]');
+      const q = dock ? dock.getBoundingClientRect() : { width: 0 };
+      if (q.width === 0) continue;
+      if (side === "left") left = Math.max(left, q.right);
+      else right = Math.min(right, q.left);
+    }
     document.documentElement.style.setProperty("--hpsop-left", left + "px");
     document.documentElement.style.setProperty("--hpsop-right", innerWidth - right + "px");
   }
