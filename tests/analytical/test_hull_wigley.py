@@ -47,6 +47,17 @@ def test_form_coefficients(wigley: ParentHull) -> None:
     assert hydro.transverse_metacentric_radius == pytest.approx(inertia / (4 / 9 * LENGTH * BREADTH * DRAFT), rel=3e-4)
 
 
+def test_a_scaled_hull_has_the_closed_forms_of_its_own_dimensions(wigley: ParentHull) -> None:
+    length, breadth, draft = 1.4 * LENGTH, 1.3 * BREADTH, 0.8 * DRAFT
+    hydro = wigley.transform(length, breadth, draft).hydrostatics
+    inertia = 2.0 / 3.0 * (breadth / 2) ** 3 * length * 16.0 / 35.0
+    # as above
+    assert hydro.transverse_metacentric_radius == pytest.approx(inertia / (4 / 9 * length * breadth * draft), rel=3e-4)
+    assert hydro.vertical_centre_of_buoyancy == pytest.approx(draft * 5.0 / 8.0, rel=1e-4)
+    assert hydro.longitudinal_centre_of_buoyancy == pytest.approx(length / 2, abs=1e-4 * length)
+    assert hydro.displaced_volume == pytest.approx(4.0 / 9.0 * length * breadth * draft, rel=1e-4)
+
+
 def test_wetted_surface(wigley: ParentHull) -> None:
     # The published value has five digits.
     assert wigley.hydrostatics.wetted_surface == pytest.approx(0.14879 * LENGTH**2, rel=1e-4)
