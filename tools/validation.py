@@ -102,12 +102,12 @@ rate of rotation is not told: 14 1/s is assumed. Geometry from secondary sources
 column. Thrust is 7 to 12 % low up to J 0.8, torque 10 to 15 %, 20 % at J 0.9. No viscous constant of ours
 does that: level 2 without any viscosity, all camber kept, still has 8 % too little thrust at J 0.3 and 5 % at
 J 0.7. With 4 % more pitch our thrust would be right at J 0.7 and torque 3 % low, with 7 % less thrust left at
-J 0.3; so table and test hardly belong together. Tanks differ as much: at J 0.728 this test has K_T 0.180 and 10 K_Q 0.331, the larger model's propulsion point 0.170 and 0.288 (from
-memory, not confirmed), ours 0.161 and 0.286. At 0.7 R the small model runs at a Reynolds number of 1.1e5,
-where the flow is laminar over much of the blade; ITTC-78's model line, which is ours, is for 2e5 and more.
-Every point misses; it stays so until the printed geometry is at hand. The propulsion point of the ship KCS,
-which drives this propeller on a larger model at 9.5 1/s, comes out of `hpsop validate` with 1.6 % in
-revolutions and 6 % in power.""",
+J 0.3; so table and test hardly belong together. Tanks differ as much: at J 0.728 this test has K_T 0.180 and
+10 K_Q 0.331, the larger model's propulsion point 0.170 and 0.288 (from memory, not confirmed), ours 0.161 and
+0.286. At 0.7 R the small model runs at a Reynolds number of 1.1e5, where the flow is laminar over much of the
+blade; ITTC-78's model line, which is ours, is for 2e5 and more. Every point misses; it stays so until the
+printed geometry is at hand. The propulsion point of the ship KCS, which drives this propeller on a larger
+model at 9.5 1/s, comes out of `hpsop validate` with 1.6 % in revolutions and 6 % in power.""",
         published_propellers.kp505,
     ),
 )

@@ -27,7 +27,8 @@ class DesignView:
         self._designs = designs
         self._refining = refining
         self._html = Slot(gui)
-        session.hub.on(("selection", "pins", "run", TOPIC), self.draw)
+        session.hub.on(("selection", "pins", "run"), self.draw)
+        session.hub.on((TOPIC,), self._errors_changed)
         session.gestures.on("act", "refine", self._refine)
         session.gestures.on("act", "choose", self._choose)
         session.gestures.on("act", "pin", self._pin)
@@ -37,8 +38,7 @@ class DesignView:
     def draw(self) -> None:
         """Draw everything again, unless nothing of it changed."""
         session = self._session
-        picture, selected = session.picture, session.selected
-        shown = None if selected is None else self._designs.with_errors(selected)
+        picture, shown = session.picture, session.selected
         doing = self._refining.words()
         state = (shown, session.pins, picture.compromise, picture.knee, picture.name, picture.current_level, doing)
         if state == self._last:
@@ -94,6 +94,13 @@ class DesignView:
             select_design(self._session, self._designs, picture.compromise)
         elif event.arg == "knee" and picture.knee is not None:
             select_design(self._session, self._designs, picture.knee)
+
+    def _errors_changed(self) -> None:
+        selected = self._session.selected
+        if selected is not None and (known := self._designs.with_errors(selected)) != selected:
+            # The same design with more known of it: every view that shows its numbers draws them again.
+            self._session.select(known)
+        self.draw()
 
     def _refine(self, event: PageEvent) -> None:
         selected = self._session.selected

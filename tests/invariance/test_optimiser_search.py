@@ -210,6 +210,8 @@ def test_the_penalty_is_the_papers_and_reported_objectives_stay_without_it() -> 
     failed = Outcome(2, None, (), False)
     for handling in ("penalty", "feasibility_first"):
         objectives, constraint = algorithm_view([failed], handling, 10.0)
+        # also by its objectives alone it stands behind everything that was computed, whose own are of order one
+        assert objectives.min() > 100.0
         assert constraint[0, 0] == FAILED_VIOLATION
         assert all(math.isfinite(value) for value in objectives[0])
 
