@@ -63,6 +63,7 @@
       }
       if (word) node.setAttribute("aria-label", word);
     });
+    H.named = (H.named || 0) + 1;
   }
 
   // ---- messages to Python: a hidden text input whose value is a JSON list of the latest events -------------------

@@ -16,10 +16,7 @@ def page(open_page, explorer):
 
 def _findings(page, within: str | None = None) -> list[str]:
     # names are given a moment after a panel appears
-    page.wait_for_function(
-        "() => [...document.querySelectorAll('input, textarea, [role=slider]')]"
-        ".every((node) => node.type === 'hidden' || node.getAttribute('aria-label'))"
-    )
+    page.wait_for_function("(given) => window.hpsop.named > given + 1", arg=page.evaluate("window.hpsop.named"))
     found = Axe().run(page, context=within).response["violations"]
     return [
         f"{item['id']}: {node['html'][:120]} {node.get('failureSummary', '')[:200]}"
