@@ -178,6 +178,19 @@ def test_objectives_of_the_ship_by_hand(initial: Ok, other: Ok) -> None:
     assert result.objectives == {"f1": values["fuel"], "f2": values["metacentric_height"]}
 
 
+def test_transport_work_counts_each_designs_own_speed() -> None:
+    case = CASE.replaced("conditions", speed="froude")
+    first, second = evaluate(case), evaluate(case, OTHER)
+    assert first.ok and second.ok
+    speeds = [sum(c.weight * c.speed for c in result.conditions) for result in (first, second)]
+    assert speeds[1] > 1.01 * speeds[0], "a longer ship is faster at the same Froude number"
+    per_work = [
+        result.fuel_per_hour / (result.hull.deadweight * speed)
+        for result, speed in zip((first, second), speeds, strict=True)
+    ]
+    assert second.all_objectives["fuel_per_transport_work"] == pytest.approx(per_work[1] / per_work[0], rel=1e-12)
+
+
 def test_units_of_consumption_are_told_apart_by_size() -> None:
     grams, kilograms = (
         evaluate(CASE.replaced("engine", load_fractions=[0.75], specific_fuel_consumptions=[value])).fuel_per_hour

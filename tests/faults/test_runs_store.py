@@ -6,6 +6,7 @@ import contextlib
 import json
 import os
 import resource
+import shutil
 import sqlite3
 import subprocess
 import sys
@@ -116,6 +117,38 @@ def test_3_one_record_a_design_and_level_and_hand_made_designs_apart(path: Path)
     assert [record.id for record in run.by_hand()] == [number, number + 1]
     assert [point.id for point in run.archive()] == [1, 2]
     assert run.design(number).origin == "hand"
+
+
+def test_a_write_that_failed_half_way_is_not_counted(path: Path) -> None:
+    store = RunStore(path, CASE)
+    asked = candidate()
+    twice = [(1, asked, result(asked)), (2, asked, result(asked))]
+    with pytest.raises(sqlite3.IntegrityError):
+        store.record_evaluations(twice, 1)
+    other = candidate(14.2)
+    store.record_evaluation(1, other, 1, result(other))
+    store.close()
+    # The file counts its rows: one that was taken back must not be missed.
+    again = RunStore(path)
+    assert set(again.outcomes()) == {1}
+    again.close()
+    assert open_run(path).design(1).evaluation.variables.draft == 14.2
+
+
+def test_a_file_that_was_exchanged_is_not_written_on(path: Path) -> None:
+    store = RunStore(path, CASE)
+    store.note("ours")
+    store.checkpoint()
+    kept = path.with_suffix(".kept")
+    path.rename(kept)
+    shutil.copy(kept, path)
+    with pytest.raises(StoreUnwritableError, match="another file stands in its place"):
+        store.note("lost")
+    path.unlink()
+    kept.rename(path)
+    store.note("and on")
+    store.close()
+    assert [entry["text"] for entry in open_run(path).summary()["journal"]] == ["ours", "and on"]
 
 
 def test_4_a_second_writer_is_refused_and_told_who_writes(path: Path) -> None:
