@@ -145,9 +145,9 @@ class WhatIfView:
         self._html.show(
             _answer(
                 fill("<p>{}</p>", headline(shown)),
-                warnings_html(shown),
                 fill("<div class='facts'>{}</div>", facts),
                 rate,
+                warnings_html(shown),
             )
         )
 
@@ -220,5 +220,7 @@ class WhatIfView:
 
 
 def _answer(*parts: Markup) -> Markup:
-    """What stays in sight while the sliders below are scrolled."""
-    return fill('<div class="hp answer">{}</div>', joined(parts))
+    """What stays in sight while the sliders below are scrolled, and never takes their place."""
+    return fill(
+        '<div class="hp answer" tabindex="0" role="region" aria-label="the what-if\'s answer">{}</div>', joined(parts)
+    )
