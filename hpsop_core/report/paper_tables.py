@@ -7,9 +7,12 @@ from hpsop_core.case.declared_variable import Variable
 from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.case.variables import VARIABLE_TABLE
 from hpsop_core.evaluation.result import Evaluation
-from hpsop_core.quantities import HULL, OBJECTIVES, free_variables
+from hpsop_core.quantities import HULL, OBJECTIVES, free_variables, variable_quantities
 from hpsop_core.report.csv_table import Cell, Table
 from hpsop_core.report.data import ReportData
+
+_PROPELLER = {"diameter", "blade_count", "pitch_ratio"}
+"""Shown where they are fixed, too."""
 
 _DIMENSIONS = ("length", "breadth", "hull_draft", "block_coefficient", "booked_cb")
 
@@ -52,9 +55,10 @@ def designs_table(data: ReportData) -> Table:
     """Table 3: the initial design and those spread along the front, with dimensions, free variables and objectives."""
     designs = [record.evaluation for _, record in data.compared() if record.evaluation.ok]
     hull = [q for q in HULL if q.key in _DIMENSIONS and any(q.value(e) is not None for e in designs)]
+    free = {quantity.key for quantity in free_variables(data.case)} | _PROPELLER
     # The draft is a dimension and may be a variable: once is enough.
-    free = [q for q in free_variables(data.case) if q.key != "draft"]
-    columns = [*hull, *free, *OBJECTIVES]
+    variables = [q for q in variable_quantities(data.case.initial.variables) if q.key in free - {"draft"}]
+    columns = [*hull, *variables, *OBJECTIVES]
     rows: list[tuple[Cell, ...]] = [
         (name, record.id, *(quantity.value(record.evaluation) for quantity in columns))
         for name, record in data.compared()
