@@ -80,7 +80,8 @@ def _run_lines(run: RunReader) -> list[str]:
     versions = ", ".join(f"{name} {value}" for name, value in summary["versions"].items())
     return [
         f"Seed {summary['seed']}, population {summary['population']}, {summary['generations']} generations; front of "
-        f"{summary['front_size']} designs (the best of all that level 2 solved), hypervolume {summary['hypervolume']:.5f} below (1.2, 1.2), "
+        f"{summary['front_size']} designs (the best of all that level 2 solved), "
+        f"hypervolume {summary['hypervolume']:.5f} below (1.2, 1.2), "
         f"{100.0 * summary['feasible_share']:.0f} % of the last population feasible. {versions}. The times are of two "
         "cores that others used too.",
         "",
