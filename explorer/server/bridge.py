@@ -152,9 +152,10 @@ def overlay(name: str, content: Markup) -> Markup:
 def scrolling(name: str, content: Markup) -> Markup:
     """What is wider than its panel, in a box that keeps its place when it is drawn again; ``name`` is the box's."""
     return fill(
-        '<div class="wide" data-keep="{}">{}</div>'
+        '<div class="wide" data-keep="{}" tabindex="0" role="region" aria-label="{}, wider than the panel">{}</div>'
         '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.kept(this)">',
         name,
+        name.replace("_", " "),
         content,
     )
 
