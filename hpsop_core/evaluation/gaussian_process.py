@@ -54,6 +54,12 @@ class GaussianProcess:
     held_out: Array
     held_out_deviation: Array
 
+    def mean_at(self, inputs: Array) -> Array:
+        """Means alone, as ``predict`` gives them."""
+        place = (np.asarray(inputs, dtype=np.float64) - self.lower) / self.extent
+        mean: Array = self.mean + _correlation(place[None, :], self.points, self.scales)[0] @ self.weights
+        return mean
+
     def predict(self, inputs: Array) -> tuple[Array, Array]:
         """Means and standard deviations at one input of shape (d,); each of shape (m,)."""
         place = (np.asarray(inputs, dtype=np.float64) - self.lower) / self.extent

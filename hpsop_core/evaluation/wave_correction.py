@@ -42,6 +42,10 @@ class WaveCorrection:
     inputs: tuple[Rows, ...]
     logarithms: Rows
 
+    def __hash__(self) -> int:
+        # Asked for at every evaluation; the inputs, ten times as many numbers, tell nothing apart that these do not.
+        return hash(self.logarithms)
+
     @classmethod
     def from_dict(cls, data: Mapping[str, Any]) -> WaveCorrection:
         """What ``dataclasses.asdict`` described, from JSON."""
@@ -52,7 +56,7 @@ class WaveCorrection:
         """The factor on level 1's wave resistance at each condition's Froude number."""
         found = []
         for regression, known, froude in zip(_fitted(self), self.logarithms, froude_numbers, strict=True):
-            logarithm = float(regression.predict(hull_inputs(hull, variables, froude))[0][0])
+            logarithm = float(regression.mean_at(hull_inputs(hull, variables, froude))[0])
             # Beyond what it knows a regression may say anything.
             found.append(float(np.exp(np.clip(logarithm, min(known) - _BEYOND, max(known) + _BEYOND))))
         return tuple(found)
