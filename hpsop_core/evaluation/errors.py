@@ -37,8 +37,8 @@ OWN_TERMS = (MESH, PLANE, DOMAIN, PROPELLER)
 # What the working mesh misses, over what the finer one adds. Flat panels converge with the square of their size: 2.8.
 # Four forms on meshes of 1, 1.25 and 1.5: 10^4 Cw 3.80, 3.89, 3.99 (parent); 3.94, 4.25, 4.35; 2.52, 2.70, 2.78;
 # 3.40, 3.64, 3.72 at Fn 0.22, which second order covers for all but the parent, by a little. The blades likewise.
-# What the borders do falls off irregularly with the domain: in the mean over speeds from Fn 0.17 to 0.22 a domain of 1.5
-# moves four forms by 5.0, 1.0, 2.9 and 6.5 %, one of 2 by 5.7, 2.1, 3.4 and 7.7: half as much again covers three of them.
+# What the borders do falls off irregularly with the domain: in the mean over speeds from Fn 0.17 to 0.22 a domain of
+# 1.5 moves four forms by 5.0, 1.0, 2.9 and 6.5 %, one of 2 by 5.7, 2.1, 3.4 and 7.7: half as much again covers three.
 _LEFT_OVER = {
     MESH: 1.0 / (1.0 - REFINEMENT**-2),
     DOMAIN: 1.5,
