@@ -1,0 +1,91 @@
+"""How a run grows with its Dask workers, whatever cores this machine has: evaluations that sleep.
+
+    python benchmarks/bench_workers.py [--seconds 0.15] [--generations 4] [--workers 1 2 4]
+
+An evaluation sleeps as long as one of level 2 computes and returns a real design's whole result, so that all that keeps
+workers idle is the run itself: a generation's last evaluations, sending, storing, the search. Then what a design costs
+the wire and the driving process, from which larger clusters follow on paper: with w workers a generation of p designs
+takes ceil(p / w) evaluations one after the other, and the driving process p times its own share.
+"""
+
+from __future__ import annotations
+
+import argparse
+import dataclasses
+import math
+import pickle
+import tempfile
+import time
+from functools import partial
+from pathlib import Path
+
+from distributed import LocalCluster
+
+from hpsop_core.case.case import Case, load_case
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.reference import reference_for
+from hpsop_core.evaluation.result import Evaluation, Ok
+from hpsop_core.runs.controller import optimize
+from hpsop_core.runs.tasks import Physics, evaluation_task
+
+POPULATION = 50
+
+
+def slept(
+    template: Ok, seconds: float, case: Case, variables: DesignVariables, level: int, reference: object
+) -> Evaluation:
+    """A real design's whole result after a sleep."""
+    time.sleep(seconds)
+    ratio, extra = variables.length_to_breadth / 8.5, 0.1 * variables.pitch_ratio
+    objectives = {"f1": ratio + extra, "f2": 2.0 - ratio + extra}
+    return dataclasses.replace(template, level=level, variables=variables, objectives=objectives, feasible=True)
+
+
+def no_reference(case: Case, level: int) -> None:
+    """Nothing to normalise with."""
+
+
+def unread(data: object) -> None:
+    """No reference comes back either."""
+
+
+def generation_seconds(case: Case, physics: Physics, workers: int, generations: int) -> float:
+    """Wall time of a generation, without the first, which starts the workers."""
+    with (
+        LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None, processes=True) as cluster,
+        tempfile.TemporaryDirectory() as folder,
+    ):
+        address = cluster.scheduler_address.removeprefix("tcp://")
+        run = optimize(
+            case, Path(folder) / "slept.hpsop", generations=generations, level1_generations=generations,
+            executor=f"dask:{address}", physics=physics,
+        )  # fmt: skip
+        times = [record.elapsed for record in run.generation_records(after=1)]
+    return sum(times) / len(times)
+
+
+def main() -> None:
+    """Print every figure."""
+    parser = argparse.ArgumentParser(description=__doc__)
+    parser.add_argument("--seconds", type=float, default=0.15)
+    parser.add_argument("--generations", type=int, default=4)
+    parser.add_argument("--workers", type=int, nargs="+", default=[1, 2, 4])
+    asked = parser.parse_args()
+    case = load_case("dtc-p4119").replaced("optimization", surface=False, final_errors=False, population=POPULATION)
+    template = evaluate(case)
+    assert isinstance(template, Ok)
+    physics = Physics(partial(slept, template, asked.seconds), no_reference, unread)
+    print(f"evaluations of {asked.seconds:g} s, {POPULATION} a generation")
+    for workers in asked.workers:
+        found = generation_seconds(case, physics, workers, asked.generations)
+        ideal = math.ceil(POPULATION / workers) * asked.seconds
+        print(f"{workers:3d} workers: {found:7.2f} s a generation, {100.0 * ideal / found:5.1f} % of it evaluations")
+    reference = reference_for(case, 2)
+    task = pickle.dumps((evaluation_task, evaluate, case, case.initial.variables, 2, reference))
+    result = evaluation_task(evaluate, case, case.initial.variables, 2, reference)
+    print(f"a design on its way to a worker {len(task)} bytes, back {len(result)} bytes")
+
+
+if __name__ == "__main__":
+    main()
