@@ -400,7 +400,14 @@ class RunDriver:
         if level not in self._references:
             text = self._store.reference(level)
             if text is None:
+                constants = self._case.constants
+                if level == FAST.number and constants.wave_calibration == "learnt":
+                    # Some twenty seconds where what is learnt is not shipped.
+                    self._tell(
+                        "state", reason=f"level 1 learns from {constants.wave_calibration_hulls} hulls of level 2"
+                    )
                 text = self._computed_reference(level)
+                self._tell("state", reason="")
                 stored = text
                 self._keep(lambda: self._store.record_reference(level, stored))
             # Also a fresh one goes through its text: a resumed run has nothing else.
