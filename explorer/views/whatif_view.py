@@ -21,7 +21,7 @@ from explorer.views.tables import headline, warnings_html
 from hpsop_core.case.variables import VARIABLE_TABLE, DesignVariables
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.markup import Markup, fill, joined
-from hpsop_core.quantities import number_text
+from hpsop_core.quantities import conditions_of, number_text
 
 _LEVEL2 = "Evaluate at level 2"
 
@@ -132,11 +132,11 @@ class WhatIfView:
             ("f₂", number_text(evaluation.objectives.get("f2"), 4)),
             *(
                 (
-                    f"condition {index + 1}: Rt, PD",
+                    f"at {name}: Rt, PD",
                     f"{number_text(1e-3 * item.total_resistance, 0)} kN, "
                     f"{number_text(1e-6 * item.delivered_power, 2)} MW",
                 )
-                for index, item in enumerate(evaluation.conditions)
+                for name, item in zip(conditions_of(evaluation), evaluation.conditions, strict=True)
             ),
         )
         facts = joined(fill("<span>{}</span><span>{}</span>", name, text) for name, text in numbers)
