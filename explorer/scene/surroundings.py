@@ -85,6 +85,14 @@ def sky(dark: bool) -> bytes:
     return bytes(trimesh.exchange.gltf.export_glb(trimesh.Scene(shell), tree_postprocessor=_unlit))
 
 
+def backdrop(dark: bool, height: int) -> NDArray[np.uint8]:
+    """What stands behind a picture that the sky itself is not in: (height, 1, 3), from the sky down to the sea."""
+    colours = np.array(_SKY[dark], dtype=float)
+    down = np.linspace(0.5, -0.5, height)
+    column = np.stack([np.interp(down, _HEIGHTS, colours[:, channel]) for channel in range(3)], axis=-1)
+    return np.round(column).astype(np.uint8)[:, None, :]
+
+
 def _unlit(tree: dict[str, Any]) -> None:
     """Colours as they are, whatever lamps there are."""
     tree["extensionsUsed"] = [*tree.get("extensionsUsed", []), "KHR_materials_unlit"]

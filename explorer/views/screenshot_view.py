@@ -7,6 +7,7 @@ import io
 import viser
 from PIL import Image
 
+from explorer.scene.surroundings import backdrop
 from explorer.server.bridge import PageEvent
 from explorer.state.session import Session
 from explorer.state.shown import file_name
@@ -70,6 +71,10 @@ class ScreenshotView:
             return
         file = io.BytesIO()
         picture = Image.fromarray(image)
-        (picture if options.picture_transparent else picture.convert("RGB")).save(file, format="PNG")
+        if not options.picture_transparent:
+            # viser photographs without what lies as far away as the sky
+            behind = Image.fromarray(backdrop(options.dark, picture.height)).resize(picture.size).convert("RGBA")
+            picture = Image.alpha_composite(behind, picture.convert("RGBA")).convert("RGB")
+        picture.save(file, format="PNG")
         name = f"{file_name(self._session.selected)}.png"
         self._client.send_file_download(name, file.getvalue(), save_immediately=True)
