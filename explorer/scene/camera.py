@@ -56,6 +56,7 @@ def preset(
     diameter: float,
     aspect: float,
     abeam: float = 0.0,
+    lens: float | None = None,
 ) -> CameraPose:
     """A preset for a ship of this size: all of it in the picture, as large as the 3D view allows.
 
@@ -66,6 +67,7 @@ def preset(
         diameter: of the propeller, m.
         aspect: width over height of the 3D view.
         abeam: how far to port another ship lies, m.
+        lens: another vertical angle than the preset's own, rad.
     """
     if name in CLOSE_UPS:
         look = (shaft[0] + 0.05 * diameter, 0.0, shaft[1] + 0.02 * diameter)
@@ -80,13 +82,13 @@ def preset(
     # a narrow view looks along the ship more than across it
     side = float(np.interp(aspect, (0.6, 1.8), (0.66, 1.75)))
     # Profile, plan and body use a long lens from far away: nearly the parallel projection of a lines drawing.
-    direction, up, lens = {
+    direction, up, own = {
         "profile": ((0.0, -1.0, 0.0), _UP, 0.14),
         "plan": ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), 0.14),
         "body": ((1.0, 0.0, 0.0), _UP, 0.14),
         "below": ((0.9, -0.9 * side, -0.42), _UP, 0.75),
     }.get(name, ((0.9, -0.9 * side, 0.40), _UP, 0.75))
-    return _framed(corners, np.array(direction), up, lens, aspect)
+    return _framed(corners, np.array(direction), up, own if lens is None else lens, aspect)
 
 
 def nearest_seen(position: Point, framed: tuple[float, float, float], abeam: float = 0.0) -> float:

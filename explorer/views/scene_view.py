@@ -43,6 +43,8 @@ _SHADOW_OPACITY = 0.3
 _ABEAM, _ABEAM_OPACITY = 1.5, 0.85
 # the propeller turns at a quarter of its real rate: a screen cannot show 100 rpm of five blades
 _SPIN_SCALE = 0.25
+# viser's own camera for pictures sees so far, m: a long lens from far away would show nothing
+_PHOTOGRAPHED = 1000.0
 # software graphics take some time for 4K
 _PICTURE_SECONDS = 90.0
 _FRAME_SECONDS = 1.0 / 25.0
@@ -280,7 +282,9 @@ class SceneView:
             camera.fov = pose.field_of_view
         self._placed.append(np.asarray(pose.position, dtype=float))
 
-    def _pose(self, geometry: SceneGeometry, framed: tuple[float, float, float], aspect: float) -> CameraPose:
+    def _pose(
+        self, geometry: SceneGeometry, framed: tuple[float, float, float], aspect: float, lens: float | None = None
+    ) -> CameraPose:
         return preset(
             self._session.options.camera,
             *framed,
@@ -288,6 +292,7 @@ class SceneView:
             geometry.diameter,
             aspect,
             self._abeam,
+            lens,
         )
 
     def picture(self, width: int, height: int, transparent: bool) -> NDArray[np.uint8]:
@@ -302,7 +307,10 @@ class SceneView:
         """
         stand: dict[str, Any] = {}
         if self._geometry is not None and self._framed is not None and self._unmoved():
-            pose = self._pose(self._geometry, self._framed, width / height)
+            for lens in (None, 0.3, 0.5, 0.75, 1.0):
+                pose = self._pose(self._geometry, self._framed, width / height, lens)
+                if math.dist(pose.position, pose.look_at) + 0.2 * self._framed[0] < _PHOTOGRAPHED:
+                    break
             stand = {"wxyz": pose.orientation(), "position": pose.position, "fov": pose.field_of_view}
         sky = self._sky if transparent else None
         if sky is not None:
