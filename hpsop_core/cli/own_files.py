@@ -51,7 +51,7 @@ def add_parsers(commands: Any) -> None:
     add_reading(hull)
     hull.add_argument("--picture", metavar="OUT.svg|png", help="body plan, profile and sectional areas")
     hull.add_argument("--case", metavar="OUT.toml", help="a case file for this ship")
-    hull.add_argument("--force", action="store_true", help="replace a picture or a case file that is there")
+    hull.add_argument("--force", action="store_true", help="replace a case file, or a --picture that is none")
     add_json(hull)
     hull.set_defaults(handler=_hull)
 
@@ -59,7 +59,7 @@ def add_parsers(commands: Any) -> None:
     propeller.add_argument("file", metavar="FILE", help="r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c under any names in use")
     propeller.add_argument("--blades", metavar="Z", required=True, help="number of blades")
     propeller.add_argument("--picture", metavar="OUT.svg|png", help="outline, sections, pitch and thickness")
-    propeller.add_argument("--force", action="store_true", help="replace a picture that is there")
+    propeller.add_argument("--force", action="store_true", help="replace a --picture that is there and is none")
     add_json(propeller)
     propeller.set_defaults(handler=_propeller)
 
@@ -126,14 +126,23 @@ def _propeller(arguments: argparse.Namespace) -> int:
 
 
 def _picture_path(word: str | None, force: bool) -> Path | None:
-    """Where the picture goes; its ending, and that nothing is lost, is checked before anything is read."""
+    """Where the picture goes: over an older picture, and over nothing else; checked before anything is read."""
     if word is None:
         return None
     path = Path(word)
     if path.suffix.lower() not in (".svg", ".png"):
         raise InputError(f"--picture {word}: a picture ends in .svg or .png")
-    refuse_to_replace(path, force)
+    refuse_to_replace(path, force or _is_picture(path))
     return path
+
+
+def _is_picture(path: Path) -> bool:
+    try:
+        with open(path, "rb") as stream:
+            begin = stream.read(1000)
+    except OSError:
+        return False
+    return not begin or begin.startswith(b"\x89PNG") or b"<svg" in begin
 
 
 def _write_picture(svg: str, path: Path) -> None:

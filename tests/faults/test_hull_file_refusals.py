@@ -118,9 +118,13 @@ def test_the_hull_command(tmp_path: Path, capsys: pytest.CaptureFixture[str]) ->
     assert main([*words, "--case", str(target)]) == 2
     assert "--force" in capsys.readouterr().err
     drawn = picture.read_bytes()
+    # A picture is drawn anew over the older one, over nothing else.
+    picture.write_bytes(drawn[:-100])
+    assert main([*words, "--picture", str(picture)]) == 0 and picture.read_bytes() == drawn
+    capsys.readouterr()
+    picture.write_text("years of work")
     assert main([*words, "--picture", str(picture)]) == 2
-    assert "--force" in capsys.readouterr().err and picture.read_bytes() == drawn
-    picture.write_text("older")
+    assert "--force" in capsys.readouterr().err and picture.read_text() == "years of work"
     assert main([*words, "--picture", str(picture), "--force"]) == 0 and picture.read_bytes() == drawn
     assert main([*words, "--picture", str(tmp_path / "own.bmp")]) == 2
 
