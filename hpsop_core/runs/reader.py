@@ -413,8 +413,9 @@ class RunReader:
 
         Args:
             level: one level only.
-            after: only ids above this one. Ids of one generation may finish in any order: ask again from the last id of
-                the last finished generation.
+            after: only ids above this one, and the initial designs, which are evaluated when their level first needs
+                them. Ids of one generation may finish in any order: ask again from the last id of the last finished
+                generation.
             by_hand: designs made by hand instead of the search's.
         """
         with self._reading() as content:
@@ -423,7 +424,8 @@ class RunReader:
                 if after < HAND_IDS_BEGIN and len(rows) != content.tally.counts.get("hand", 0):
                     raise DamagedRunError(self.path, "a design made by hand is missing")
             elif after:
-                rows = content.sorted_rows("evaluations", "WHERE id > ? AND id < ?", (after, HAND_IDS_BEGIN))
+                which = "WHERE (id > ? OR id < ?) AND id < ?"
+                rows = content.sorted_rows("evaluations", which, (after, FIRST_SEARCH_ID, HAND_IDS_BEGIN))
                 self._check_none_missing(after, [row[0] for row in rows])
             else:
                 rows = content.all_rows("evaluations")

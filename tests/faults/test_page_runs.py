@@ -21,6 +21,8 @@ from explorer.services.run_keeper import RunKeeper
 from explorer.state.run_picture import FAILED, FINISHED
 from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController, optimize
+from hpsop_core.runs.events import RunEvent
+from hpsop_core.runs.reader import open_run
 from hpsop_core.runs.store import RunStore
 
 SECONDS = 10.0
@@ -41,6 +43,30 @@ def keeper(tmp_path: Path, finished: Path) -> Iterator[RunKeeper]:
     assert kept.picture().status == FINISHED
     yield kept
     kept.close()
+
+
+def test_who_watches_from_the_beginning_knows_what_a_late_comer_knows(tmp_path: Path) -> None:
+    """The initial design of level 2 has the second number and is evaluated last of all: when level 2 begins."""
+    path, watching = tmp_path / "run.hpsop", []
+
+    def look(event: RunEvent) -> None:
+        if event.kind == "generation":
+            if not watching:
+                watching.extend([open_run(path), RunKeeper(path, lambda: None)])
+            reader, keeper = watching
+            reader.known_fronts()
+            keeper.picture()
+
+    optimize(small_case(), path, workers=1, physics=physics(), progress=look)
+    reader, keeper = watching
+    late = open_run(path)
+    assert 2 in late.generations()[4].asked and late.generations()[4].level == 2
+    assert reader.known_fronts() == late.known_fronts()
+    picture, afterwards = keeper.picture(), RunKeeper(path, lambda: None)
+    assert picture.status == FINISHED and list(picture.ids) == list(afterwards.picture().ids)
+    assert picture.generations == afterwards.picture().generations
+    keeper.close()
+    afterwards.close()
 
 
 def damage(path: Path) -> None:
