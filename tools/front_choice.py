@@ -7,6 +7,7 @@ The tables of docs/recommended-case.md are made of it. It looks at the front of 
 
 from __future__ import annotations
 
+import argparse
 import sys
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -55,9 +56,11 @@ def choice_of(run: RunReader) -> Choice:
     return Choice(len(found), inside, widest, spans[widest])
 
 
-def main(paths: Sequence[str]) -> int:
+def main(arguments: Sequence[str] | None = None) -> int:
     """Print a line for each run."""
-    for path in paths:
+    parser = argparse.ArgumentParser(prog="python -m tools.front_choice", description=__doc__)
+    parser.add_argument("runs", nargs="+", metavar="RUN.hpsop")
+    for path in parser.parse_args(arguments).runs:
         found = choice_of(open_run(path))
         first, second = (100.0 * span for span in found.spans)
         print(
@@ -68,4 +71,4 @@ def main(paths: Sequence[str]) -> int:
 
 
 if __name__ == "__main__":
-    sys.exit(main(sys.argv[1:]))
+    sys.exit(main())

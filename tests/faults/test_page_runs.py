@@ -119,7 +119,7 @@ def test_the_page_starts_though_the_newest_run_is_damaged(tmp_path: Path, finish
     damage(path)
     opening = _chosen([], folder)
     assert opening.run == path, "its first look tells nothing"
-    port = free_port("127.0.0.1", 8390)
+    port = free_port("127.0.0.1", 8730)
     page = Explorer(opening.case, opening.run, port=port, folder=folder, workers=1, run_asked=False)
     try:
         assert "newest.hpsop: is damaged" in page.trouble

@@ -152,9 +152,11 @@ def test_the_propeller_command(tmp_path: Path, capsys: pytest.CaptureFixture[str
     assert told["expanded_area_ratio"] == pytest.approx(4.0 * radial_table_from_csv(file).expanded_area_ratio_per_blade)
     assert picture.read_bytes().startswith(b"\x89PNG")
     drawn = picture.read_bytes()
-    for words, status in (([], 2), (["--force"], 0)):
+    # Over an older picture, and over nothing else.
+    for content, words, status in ((drawn[:-99], [], 0), (b"other", [], 2), (b"other", ["--force"], 0)):
+        picture.write_bytes(content)
         assert main(["propeller", str(file), "--blades", "4", "--picture", str(picture), *words]) == status
-        assert picture.read_bytes() == drawn
+        assert picture.read_bytes() == (drawn if status == 0 else content)
     assert main(["propeller", str(file), "--blades", "9"]) == 2
 
 
