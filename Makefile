@@ -18,13 +18,8 @@ export OMP_NUM_THREADS := 1
 explore: $(VENV)/installed
 	$(BIN)/hpsop-explore $(ARGS)
 
-# The browser tests and the others side by side: each spends half of its time waiting.
 test: lint chromium
-	@$(BIN)/python -m pytest -m "browser and not soak" >$(VENV)/browser-tests.log 2>&1 & browser=$$!; \
-	trap 'kill $$browser' INT TERM; \
-	$(BIN)/python -m pytest -m "not browser and not soak"; others=$$?; \
-	wait $$browser; shown=$$?; cat $(VENV)/browser-tests.log; \
-	exit $$(( others > shown ? others : shown ))
+	$(BIN)/python -m pytest -m "not soak"
 
 test-core: lint
 	$(BIN)/python -m pytest -m "not soak and not browser"
