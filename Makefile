@@ -42,7 +42,7 @@ faults: $(VENV)/installed-for-tests
 	$(BIN)/python -m tools.faults $(ARGS)
 
 benchmark: $(VENV)/installed-for-tests
-	for script in benchmarks/bench_*.py; do echo "== $$script"; $(BIN)/python $$script || exit 1; done
+	for script in benchmarks/bench_*.py; do echo "== $$script"; PYTHONPATH=. $(BIN)/python $$script || exit 1; done
 
 # The documentation as a site in site/; nothing is fetched while it is built. To read it: python -m http.server -d site
 docs: $(VENV)/installed-for-docs
