@@ -121,12 +121,7 @@ class Bridge:
         hide_row = Markup('div:has(> div > * > * > label[for="{}"]){{display:none!important}}').format(uuid)
         Slot(
             gui,
-            fill(
-                '<div class="hpsop-root"></div><style>{}</style>'
-                '<img alt="" style="display:none" src="data:," onerror="{}">',
-                hide_row,
-                script,
-            ),
+            fill('<div class="hpsop-root"></div><style>{}</style>{}', hide_row, _runs(script)),
         )
         self._channel.on_update(self._on_update)
 
@@ -139,58 +134,63 @@ class Bridge:
                 self._receive(item)
 
 
+def _runs(script: str) -> Markup:
+    """What runs a script once the browser has put it into the page: React's inner HTML starts no ``<script>``."""
+    return fill('<img alt="" style="display:none" src="data:," onerror="{}">', script)
+
+
+def _calls(function: str) -> Markup:
+    """What hands itself to a function of the page's script, once that is there."""
+    return _runs(f"window.hpsop&&window.hpsop.{function}(this)")
+
+
 def overlay(name: str, content: Markup) -> Markup:
     """HTML that the browser lifts out of its panel and lays over the 3D view."""
     return fill(
-        '<template data-overlay="{}">{}</template>'
-        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.overlay(this)">',
+        '<template data-overlay="{}">{}</template>',
         name,
         content,
-    )
+    ) + _calls("overlay")
 
 
 def scrolling(name: str, content: Markup) -> Markup:
     """What is wider than its panel, in a box that keeps its place when it is drawn again; ``name`` is the box's."""
     return fill(
-        '<div class="wide" data-keep="{}" tabindex="0" role="region" aria-label="{}, wider than the panel">{}</div>'
-        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.kept(this)">',
+        '<div class="wide" data-keep="{}" tabindex="0" role="region" aria-label="{}, wider than the panel">{}</div>',
         name,
         name.replace("_", " "),
         content,
-    )
+    ) + _calls("kept")
 
 
 def picture_file(name: str, drawing: Markup, scale: float, serial: int) -> Markup:
     """An SVG drawing that the browser saves as a PNG of ``scale`` pixels for one of its own; once a ``serial``."""
     return fill(
-        '<template data-file="{}" data-scale="{:g}" data-serial="{}">{}</template>'
-        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.picture(this)">',
+        '<template data-file="{}" data-scale="{:g}" data-serial="{}">{}</template>',
         name,
         scale,
         serial,
         drawing,
-    )
+    ) + _calls("picture")
 
 
 def link_box(query: str, serial: int) -> Markup:
     """A query that the browser makes a link to its own address of, copies and shows; once a ``serial``."""
     return fill(
-        '<template data-query="{}" data-serial="{}"></template>'
-        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.link(this)">',
+        '<template data-query="{}" data-serial="{}"></template>',
         query,
         serial,
-    )
+    ) + _calls("link")
 
 
 def tooltip(chart: str, content: Markup, serial: int) -> Markup:
     """HTML that the browser shows beside the pointer while it rests on ``chart``."""
     return fill(
-        '<template data-chart="{}" data-serial="{}">{}</template>'
-        '<img alt="" style="display:none" src="data:," onerror="window.hpsop&amp;&amp;window.hpsop.tip(this)">',
+        '<template data-chart="{}" data-serial="{}">{}</template>',
         chart,
         serial,
         content,
-    )
+    ) + _calls("tip")
 
 
 def page_style() -> str:
