@@ -12,7 +12,6 @@ import pytest
 from numpy.typing import NDArray
 from scipy.stats import spearmanr
 
-from hpsop_core.case.case import load_case
 from hpsop_core.charts.axis import Axis, padded, tick_texts, ticks
 from hpsop_core.charts.correlations import correlation_cell, rank_correlation
 from hpsop_core.charts.looks import Look, Published, Sheet
@@ -25,7 +24,7 @@ from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.reference import reference_for
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import Markup
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 
 Array = NDArray[np.float64]
 SVG = "{http://www.w3.org/2000/svg}"
@@ -40,9 +39,7 @@ def unit_plot(**more) -> Plot:
 @pytest.fixture(scope="module")
 def initial() -> Evaluation:
     """The recommended case's initial design; stated wave coefficients, so that level 1 needs no level 2."""
-    case = load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    case = stated_case()
     return evaluate(case, case.initial.variables, 1, reference_for(case, 1))
 
 

@@ -15,10 +15,10 @@ from explorer.scene.transfer import transferred
 from explorer.services.answers import Answers
 from explorer.state.shown import Shown
 from explorer.views.tables import design_card, many_table
-from hpsop_core.case.case import KNOT, Case, load_case
+from hpsop_core.case.case import KNOT, Case
 from hpsop_core.evaluation.result import Evaluation, Failed
 from hpsop_core.quantities import change_text, number_text
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 
 Array = NDArray[np.float64]
 
@@ -26,9 +26,7 @@ Array = NDArray[np.float64]
 @pytest.fixture(scope="module")
 def case() -> Case:
     """The recommended case with stated wave coefficients, so that level 1 needs no level 2."""
-    return load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    return stated_case()
 
 
 @pytest.fixture(scope="module")

@@ -12,21 +12,19 @@ from explorer.services.answers import Answers
 from explorer.state.run_picture import GenerationPicture, RunPicture
 from explorer.state.shown import Shown
 from explorer.views.headline import headline_card, traffic_lights
-from hpsop_core.case.case import KNOT, Case, load_case
+from hpsop_core.case.case import KNOT, Case
 from hpsop_core.charts.looks import Look, Sheet
 from hpsop_core.charts.propulsion import resistance_chart
 from hpsop_core.evaluation.coverage import KEPT, LIMIT, UNCOVERED, VIOLATED, standings
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.quantities import conditions_of
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 
 
 @pytest.fixture(scope="module")
 def case() -> Case:
     """The recommended case with stated wave coefficients, so that level 1 needs no level 2."""
-    return load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    return stated_case()
 
 
 @pytest.fixture(scope="module")

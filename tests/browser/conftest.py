@@ -14,8 +14,8 @@ from playwright.sync_api import Browser, Page, sync_playwright
 
 from explorer.app import Explorer
 from explorer.server.security import free_port
-from hpsop_core.case.case import Case, load_case
-from tests.two_speeds import TWO_SPEEDS
+from hpsop_core.case.case import Case
+from tests.two_speeds import stated_case
 from tools.chromium import ARGUMENTS, chromium_program
 
 pytestmark = pytest.mark.browser
@@ -32,9 +32,7 @@ def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
 
 def small_case(**settings: Any) -> Case:
     """Two speeds with a small search at level 1; the waves stated, so that level 2 is not needed."""
-    case = load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    case = stated_case()
     return case.replaced("optimization", **{"population": 8, "generations": 40, "level1_generations": 40, **settings})
 
 

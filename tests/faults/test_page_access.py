@@ -18,9 +18,8 @@ from explorer.server.access import origin_of
 from explorer.server.notices import Notices
 from explorer.server.security import address_of, free_port
 from explorer.server.token import door, token_of
-from hpsop_core.case.case import load_case
 from hpsop_core.errors import InputError
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 
 PROXY = "https://hub.example.org"
 
@@ -28,9 +27,7 @@ PROXY = "https://hub.example.org"
 @pytest.fixture(scope="module")
 def explorer(tmp_path_factory: pytest.TempPathFactory) -> Any:
     # stated waves: the initial design then needs level 1 alone
-    case = load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    case = stated_case()
     port = free_port("127.0.0.1", 8590)
     page = Explorer(case, port=port, folder=tmp_path_factory.mktemp("runs"), workers=1, origins=[PROXY])
     yield page

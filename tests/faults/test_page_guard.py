@@ -15,17 +15,14 @@ from page_client import Hostile
 from explorer.app import Explorer
 from explorer.server.guard import check_update
 from explorer.server.security import free_port
-from hpsop_core.case.case import load_case
 from hpsop_core.errors import InputError
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 
 
 @pytest.fixture(scope="module")
 def explorer(tmp_path_factory: pytest.TempPathFactory) -> Any:
     # stated waves: the initial design then needs level 1 alone
-    case = load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    case = stated_case()
     page = Explorer(case, port=free_port("127.0.0.1", 8560), folder=tmp_path_factory.mktemp("runs"), workers=1)
     yield page
     page.close()

@@ -23,7 +23,7 @@ from explorer.state.run_picture import RunPicture
 from explorer.state.session import Session
 from explorer.views.pareto.picking import _seen
 from hpsop_core.case.case import load_case
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import TWO_SPEEDS, stated_case
 
 CAMERA = {
     "type": "ViewerCameraMessage",
@@ -43,9 +43,7 @@ CAMERA = {
 def explorer(tmp_path_factory: pytest.TempPathFactory) -> Any:
     _OTHERS.update(threading.enumerate())
     # stated waves: the initial design then needs level 1 alone
-    case = load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    case = stated_case()
     page = Explorer(case, port=free_port("127.0.0.1", 8620), folder=tmp_path_factory.mktemp("runs"), workers=1)
     page.services.designs.first()
     yield page

@@ -21,10 +21,9 @@ from explorer.server.security import free_port
 from explorer.server.uploads import LARGEST_FILE, shown_name
 from explorer.services.reading import ReadingProcess, hull_file, kind_of
 from explorer.services.reading_job import Refused
-from hpsop_core.case.case import load_case
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.hull.input import HullFile, ReadOptions
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 
 HULLS = Path(__file__).resolve().parents[1] / "data" / "hulls"
 TABLE = (HULLS / "s60_cb060.csv").read_bytes()
@@ -42,9 +41,7 @@ def _until(condition: Callable[[], object], what: str) -> None:
 # ---- what comes over the line ----------------------------------------------------------------------------------------
 @pytest.fixture(scope="module")
 def explorer(tmp_path_factory: pytest.TempPathFactory) -> Any:
-    case = load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    case = stated_case()
     page = Explorer(case, port=free_port("127.0.0.1", 8660), folder=tmp_path_factory.mktemp("runs"), workers=1)
     yield page
     page.close()

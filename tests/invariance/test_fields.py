@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import hpsop_core
-from hpsop_core.case.case import Case, load_case
+from hpsop_core.case.case import Case
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.fields import PressureField, blade_pressure, hull_pressure, pressures, waves
@@ -15,15 +15,13 @@ from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.geometry.clearance import propeller_placement
 from hpsop_core.hydro.cavitation import pressure_margin
 from hpsop_core.typing_aliases import Array
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 
 
 @pytest.fixture(scope="module")
 def case() -> Case:
     """The recommended case with stated wave coefficients, so that level 1 needs no level 2."""
-    return load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    return stated_case()
 
 
 @pytest.fixture(scope="module")

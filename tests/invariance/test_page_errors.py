@@ -18,9 +18,9 @@ from hpsop_core.case.case import Case, load_case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.result import Evaluation, Failed, Ok
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 
-CASE = load_case(TWO_SPEEDS).replaced("constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4))
+CASE = stated_case()
 OWN = {"f1": 0.004, "f2": 0.001}
 
 

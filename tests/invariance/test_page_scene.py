@@ -11,13 +11,13 @@ from scipy.spatial import cKDTree
 from explorer.scene.geometry import scene_geometry
 from explorer.scene.pressure import blade_map, hull_map
 from explorer.scene.waves import wave_surface
-from hpsop_core.case.case import Case, load_case
+from hpsop_core.case.case import Case
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.fields import WaveField, blade_pressure, hull_pressure, waves
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.geometry.hull.hull import Hull
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 
 FROUDE = 0.27
 
@@ -25,9 +25,7 @@ FROUDE = 0.27
 @pytest.fixture(scope="module")
 def case() -> Case:
     """The recommended case with stated wave coefficients, so that level 1 needs no level 2."""
-    return load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    return stated_case()
 
 
 @pytest.fixture(scope="module")

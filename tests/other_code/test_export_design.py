@@ -11,7 +11,7 @@ import pytest
 import rhino3dm
 import trimesh
 
-from hpsop_core import load_case, optimize
+from hpsop_core import optimize
 from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.export.design_files import export_design
 from hpsop_core.export.slivers import least_angles
@@ -22,14 +22,12 @@ from hpsop_core.geometry.propeller.input import radial_table_from_csv
 from hpsop_core.geometry.propeller.nurbs import propeller_surfaces
 from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.runs.reader import RunReader
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 
 
 @pytest.fixture(scope="module")
 def run(tmp_path_factory: pytest.TempPathFactory) -> RunReader:
-    case = load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    case = stated_case()
     file = tmp_path_factory.mktemp("run") / "small.hpsop"
     return optimize(case, file, generations=1, level1_generations=1, population=6, seed=2, workers=1)
 

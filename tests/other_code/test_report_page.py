@@ -28,7 +28,7 @@ from hpsop_core.report.tables import failure_table
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.reader import RunReader, open_run
 from hpsop_core.runs.records import DesignRecord, Failure
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 
 TITLE = "<script>alert('Hull & \"screw\"')</script> $\\frac{1}{2 d·Ω"
 SECTIONS = ["result", "pareto", "spread", "propulsion", "form", "drivers", "trust", "assumptions", "front", "run",
@@ -38,9 +38,7 @@ FIGURES = ["pareto", "convergence", "evolution", "resistance-wave", "resistance-
 
 
 def quick_case() -> Case:
-    case = load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    case = stated_case()
     return dataclasses.replace(case, title=TITLE, description="x < y & z </p><b>")
 
 

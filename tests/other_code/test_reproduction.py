@@ -16,7 +16,7 @@ from hpsop_core.reproduction import figures, paper
 from hpsop_core.reproduction.comparison import Reproduction
 from hpsop_core.reproduction.reproduce import write_reproduction
 from hpsop_core.runs.reader import RunReader, open_run
-from tests.two_speeds import TWO_SPEEDS
+from tests.two_speeds import stated_case
 from tools import paper_run
 
 SECTIONS = ["verdict", "setup", "table3", "table4", "figure5", "figures67", "figure8", "figure9", "run"]
@@ -154,9 +154,7 @@ def test_called_again_it_goes_on_and_replaces_its_files_only(
 
 
 def test_a_run_of_another_case_has_the_papers_tables_and_figures(tmp_path: Path) -> None:
-    case = load_case(TWO_SPEEDS).replaced(
-        "constants", wave_calibration="stated", stated_wave_coefficients=(2.8e-4, 6.6e-4)
-    )
+    case = stated_case()
     own = optimize(case, tmp_path / "own.hpsop", generations=1, level1_generations=1, population=8, seed=2, workers=1)
     target = tmp_path / "out"
     assert main(["reproduce", "--to", str(target), "--run", str(own.path)]) == 0
