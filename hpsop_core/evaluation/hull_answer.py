@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 from functools import lru_cache
-from typing import TYPE_CHECKING
+from typing import TYPE_CHECKING, Literal
 
 from hpsop_core.case.own_hull import own_table
 from hpsop_core.case.sections import HullSection
@@ -121,28 +121,19 @@ def wave_answers(variables: HullVariables, level: int, froude_numbers: tuple[flo
     return solve_waves(hull, level, froude_numbers)
 
 
-@lru_cache(maxsize=512)
-def finer_wave_answers(variables: HullVariables, froude_numbers: tuple[float, ...]) -> tuple[WaveAnswer, ...]:
-    """As ``wave_answers`` at the true level, on its finer mesh.
+@lru_cache(maxsize=1024)
+def trial_wave_answers(
+    variables: HullVariables, froude_numbers: tuple[float, ...], way: Literal["finer", "wider"]
+) -> tuple[WaveAnswer, ...]:
+    """As ``wave_answers`` at the true level, on its finer mesh or in its wider domain.
 
     Raises:
         SolverFailure: the solver cannot give a number.
     """
-    if TRUTH.solve_finer_waves is None:
-        raise SolverFailure("waves", "the true level has no finer mesh")
-    return TRUTH.solve_finer_waves(build_hull(variables), froude_numbers)
-
-
-@lru_cache(maxsize=512)
-def wider_wave_answers(variables: HullVariables, froude_numbers: tuple[float, ...]) -> tuple[WaveAnswer, ...]:
-    """As ``wave_answers`` at the true level, in its wider domain.
-
-    Raises:
-        SolverFailure: the solver cannot give a number.
-    """
-    if TRUTH.solve_wider_waves is None:
-        raise SolverFailure("waves", "the true level has no wider domain")
-    return TRUTH.solve_wider_waves(build_hull(variables), froude_numbers)
+    solve = {"finer": TRUTH.solve_finer_waves, "wider": TRUTH.solve_wider_waves}[way]
+    if solve is None:
+        raise SolverFailure("waves", f"the true level has no {way} solution")
+    return solve(build_hull(variables), froude_numbers)
 
 
 def solve_waves(hull: Hull, level: int, froude_numbers: Sequence[float]) -> tuple[WaveAnswer, ...]:

@@ -18,11 +18,10 @@ from hpsop_core.evaluation.condition import condition_result
 from hpsop_core.evaluation.hull_answer import (
     HullVariables,
     build_hull,
-    finer_wave_answers,
     hull_variables,
     resistance_point,
+    trial_wave_answers,
     wave_answers,
-    wider_wave_answers,
 )
 from hpsop_core.evaluation.hull_propulsion import (
     HoltropNumbers,
@@ -224,14 +223,12 @@ def compute_trial(case: Case, variables: DesignVariables, basis: Basis, trial: T
 
 
 def _trial_waves(key: HullVariables, froude_numbers: tuple[float, ...], trial: Trial) -> tuple[WaveAnswer, ...]:
-    if trial.waves == "finer":
-        return finer_wave_answers(key, froude_numbers)
-    if trial.waves == "wider":
-        return wider_wave_answers(key, froude_numbers)
+    if trial.waves in ("finer", "wider"):
+        return trial_wave_answers(key, froude_numbers, trial.waves)
     plain = wave_answers(key, TRUTH.number, froude_numbers)
     if trial.waves != "pressure":
         return plain
-    finer = finer_wave_answers(key, froude_numbers)
+    finer = trial_wave_answers(key, froude_numbers, "finer")
     return tuple(
         replace(own, wave_coefficient=own.wave_coefficient + 0.5 * (pressure - other.wave_coefficient))
         if (pressure := other.wave_coefficient_pressure) is not None
