@@ -395,19 +395,13 @@ class RunKeeper:
     ) -> Mapping[int, Mapping[str, float]]:
         if not generations:
             return {}
-        # Read before, so nothing is opened here.
         known = {record.id: record.evaluation.comparison_errors for record in reader.designs(generations[-1].front)}
         return {number: widths for number, widths in known.items() if widths}
 
     def _read_new(self, reader: RunReader) -> None:
-        points = [*reader.archive(after=self._complete_until(reader)), *reader.archive(by_hand=True)]
-        fresh = [point for point in points if point.id not in self._known]
-        if not fresh:
-            return
-        rows, table = [], []
-        # one connection for all of them: opening one costs more than reading a design
-        records = reader.designs([point.id for point in fresh])
-        for point, record in zip(fresh, records, strict=True):
+        numbers, rows, table = [], [], []
+        for point, evaluation in reader.news(self._complete_until(reader), self._known):
+            numbers.append(point.id)
             f1, f2 = point.objectives if point.objectives is not None else (np.nan, np.nan)
             rows.append(
                 [
@@ -421,17 +415,15 @@ class RunKeeper:
                     point.predicted,
                 ]
             )
-            evaluation = record.evaluation
-            table.append(
-                [
-                    np.nan if (value := quantity.value(evaluation)) is None else float(value)
-                    for quantity in self._quantities
-                ]
-            )
-            self._known.add(point.id)
+            values = (quantity.value(evaluation) for quantity in self._quantities)
+            table.append(np.array([np.nan if value is None else value for value in values], dtype=float))
             self._points[point.id] = point
+        if not numbers:
+            return
+        # Not before all of them have been read: a record that cannot be read is met again.
+        self._known.update(numbers)
         # Fresh arrays each time: a picture that a view still draws from never changes under it.
-        ids = np.concatenate([self._ids, np.array([point.id for point in fresh], dtype=np.int64)])
+        ids = np.concatenate([self._ids, np.array(numbers, dtype=np.int64)])
         order = np.argsort(ids, kind="stable")
         self._ids = ids[order]
         self._rows = np.concatenate([self._rows, np.array(rows, dtype=float)])[order]

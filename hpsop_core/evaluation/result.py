@@ -12,7 +12,7 @@ from typing import Any, ClassVar, Literal, TypeAlias
 
 from hpsop_core.case.constraints import CONSTRAINTS
 from hpsop_core.case.design_numbers import ConditionResult, HullResult, PropellerResult
-from hpsop_core.case.variables import DesignVariables
+from hpsop_core.case.variables import DesignSpace, DesignVariables
 
 
 @dataclass(frozen=True)
@@ -121,6 +121,7 @@ def _flat(value: Any) -> dict[str, Any]:
 
 _FLAT: tuple[type[Any], ...] = (HullResult, PropellerResult, ConditionResult, OpenWaterCurve)
 _NAMES = {kind: tuple(item.name for item in fields(kind)) for kind in _FLAT}
+_NAME_SETS = {kind: frozenset(names) for kind, names in _NAMES.items()}
 
 
 _PROFILE = ("fuel_per_hour", "carbon_dioxide_per_hour", "attained_eedi_g_per_tonne_mile")
@@ -198,8 +199,13 @@ class Failed:
 Evaluation: TypeAlias = Ok | Failed
 
 
-def evaluation_from_dict(data: Mapping[str, Any]) -> Evaluation:
-    """The evaluation that ``as_dict`` described, to the last bit; keys that this version does not know are left."""
+def evaluation_from_dict(data: Mapping[str, Any], bounds: DesignSpace | None = None) -> Evaluation:
+    """The evaluation that ``as_dict`` described, to the last bit; keys that this version does not know are left.
+
+    Args:
+        data: the document.
+        bounds: of the case; given, they say which of them the design stands on, whatever the document says.
+    """
     variables = DesignVariables.from_dict(data["variables"])
     if data["status"] != "ok":
         stage = data.get("stage", "")
@@ -218,7 +224,7 @@ def evaluation_from_dict(data: Mapping[str, Any]) -> Evaluation:
         feasible=data["feasible"],
         warnings=tuple(data.get("warnings", ())),
         open_water=OpenWaterCurve(**curves),
-        active_bounds=data.get("active_bounds", {}),
+        active_bounds=data.get("active_bounds", {}) if bounds is None else bounds.active(variables),
         **{name: data.get(name) for name in _PROFILE},
         errors=data.get("errors", {}),
         comparison_errors=data.get("comparison_errors", {}),
@@ -249,4 +255,5 @@ def _lifted(condition: Mapping[str, Any]) -> Mapping[str, Any]:
 
 
 def _known(kind: type[Any], data: Mapping[str, Any]) -> dict[str, Any]:
-    return {item.name: data[item.name] for item in fields(kind) if item.name in data}
+    known = _NAME_SETS[kind]
+    return {name: value for name, value in data.items() if name in known}

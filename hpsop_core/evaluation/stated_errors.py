@@ -15,7 +15,6 @@ import numpy as np
 
 from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import ConditionResult
-from hpsop_core.evaluation.curves import smooth_open_water
 from hpsop_core.evaluation.input_widths import form_factor_width, wake_fraction_width
 from hpsop_core.evaluation.levels import TRUTH
 from hpsop_core.evaluation.result import Evaluation, Ok
@@ -85,6 +84,9 @@ def _rematched(
     case: Case, evaluation: Ok, condition: ConditionResult, resistance: float, wake: float = 0.0
 ) -> dict[str, float]:
     """By how much a condition's numbers change with a resistance and a wake fraction added, t as it is."""
+    # Where designs have errors of their own SciPy's interpolation is not loaded for this.
+    from hpsop_core.evaluation.curves import smooth_open_water
+
     advance, thrust, torque, _ = smooth_open_water(evaluation.open_water, _CURVE_POINTS)
     useful = thrust > 0.0
     advance, thrust, torque = advance[useful], thrust[useful], torque[useful]

@@ -10,7 +10,7 @@ from functools import cached_property
 from pathlib import Path
 from typing import Any
 
-from hpsop_core.runs.checksums import DamagedRunError, Tally, checked, checksum
+from hpsop_core.runs.checksums import DamagedRunError, Tally, checked
 from hpsop_core.runs.packing import unpack
 from hpsop_core.runs.records import check_agreement
 from hpsop_core.runs.schema import CHECKSUMS_SINCE, COLUMNS, RUN_KEYS, cells
@@ -44,20 +44,30 @@ class RunContent:
             raise DamagedRunError(self._path, f"it has no '{missing[0]}'")
         return values
 
-    def rows(self, table: str, condition: str = "", arguments: Sequence[Any] = ()) -> Iterator[tuple[Any, ...]]:
+    def rows(
+        self,
+        table: str,
+        condition: str = "",
+        arguments: Sequence[Any] = (),
+        checksums: list[int] | None = None,
+    ) -> Iterator[tuple[Any, ...]]:
         """Records of a table, with the columns of ``schema.COLUMNS``.
 
         Args:
             table: its name.
             condition: SQL after the table's name ("WHERE ... ORDER BY ...").
             arguments: of the condition.
+            checksums: takes those of the records, in their order.
 
         Raises:
             DamagedRunError: a record is not what was written.
         """
         names = f"{cells(table, self._version)},{'checksum' if self._sealed else 'NULL'}"
         for row in self._connection.execute(f"SELECT {names} FROM {table} {condition}", arguments):
-            yield checked(self._path, table, row)
+            cells_of = checked(self._path, table, row)
+            if checksums is not None:
+                checksums.append(row[-1])
+            yield cells_of
 
     def all_rows(self, table: str) -> list[tuple[Any, ...]]:
         """Every record of a table, ascending in its first column; none may be missing.
@@ -65,20 +75,27 @@ class RunContent:
         Raises:
             DamagedRunError: one is missing, one too many, or not what was written.
         """
-        rows = self.sorted_rows(table)
+        checksums: list[int] = []
+        rows = self.sorted_rows(table, checksums=checksums)
         if self._sealed:
-            # Again, over what was read: a tree that holds a record twice gives good checksums.
-            self.tally.check(self._path, table, [checksum(table, row) for row in rows])
+            # Of what was read: a tree that holds a record twice gives good checksums.
+            self.tally.check(self._path, table, checksums)
         return rows
 
-    def sorted_rows(self, table: str, condition: str = "", arguments: Sequence[Any] = ()) -> list[tuple[Any, ...]]:
+    def sorted_rows(
+        self,
+        table: str,
+        condition: str = "",
+        arguments: Sequence[Any] = (),
+        checksums: list[int] | None = None,
+    ) -> list[tuple[Any, ...]]:
         """As ``rows``, ascending in the table's first column.
 
         Raises:
             DamagedRunError: they are not, though SQLite was asked for it: the file's tree is not in order.
         """
         order = COLUMNS[table][0]
-        rows = list(self.rows(table, f"{condition} ORDER BY {order}", arguments))
+        rows = list(self.rows(table, f"{condition} ORDER BY {order}", arguments, checksums))
         if any(not one[0] <= two[0] for one, two in itertools.pairwise(rows)):
             raise DamagedRunError(self._path, f"its table '{table}' is not in order")
         return rows

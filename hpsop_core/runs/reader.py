@@ -7,7 +7,7 @@ import dataclasses
 import json
 import os
 import time
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Container, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -37,6 +37,7 @@ from hpsop_core.runs.schema import COLUMNS, FIRST_SEARCH_ID, HAND_IDS_BEGIN, sch
 from hpsop_core.runs.ship import ShipFile, named_files, refuse_changed_ship, with_files
 
 _BEYOND_ANY_ID = 2**63  # SQLite's integers end here
+_ORIGIN = COLUMNS["evaluations"].index("origin")
 
 
 class NotEvaluatedError(InputError):
@@ -304,7 +305,7 @@ class RunReader:
                     evaluation = self._placed(content.document(row))
                     self._designs[number] = DesignRecord(number, record["origin"], record["generation"], evaluation)
         errors = self._errors(fresh=bool(missing))
-        return tuple(_with_errors(self._designs[number], errors.get(str(number))) for number in ids)
+        return tuple(_refined(self._designs[number], errors.get(str(number))) for number in ids)
 
     def _errors(self, fresh: bool) -> dict[str, dict[str, Any]]:
         """The error fields by the design's id, of designs that were solved finer.
@@ -324,10 +325,7 @@ class RunReader:
 
     def _placed(self, document: Mapping[str, Any]) -> Evaluation:
         """An evaluation with the bounds that it stands on, which files of earlier versions do not tell."""
-        evaluation = evaluation_from_dict(document)
-        if not evaluation.ok:
-            return evaluation
-        return dataclasses.replace(evaluation, active_bounds=self.case.bounds.active(evaluation.variables))
+        return evaluation_from_dict(document, self.case.bounds)
 
     def design(self, name: int | str, generation: int | None = None) -> DesignRecord:
         """A design by id, or "initial", "compromise" or "knee" of a generation (the last one by default).
@@ -419,33 +417,39 @@ class RunReader:
             by_hand: designs made by hand instead of the search's.
         """
         with self._reading() as content:
-            if by_hand:
-                rows = content.sorted_rows("evaluations", "WHERE id > ?", (max(after, HAND_IDS_BEGIN - 1),))
-                if after < HAND_IDS_BEGIN and len(rows) != content.tally.counts.get("hand", 0):
-                    raise DamagedRunError(self.path, "a design made by hand is missing")
-            elif after:
-                which = "WHERE (id > ? OR id < ?) AND id < ?"
-                rows = content.sorted_rows("evaluations", which, (after, FIRST_SEARCH_ID, HAND_IDS_BEGIN))
-                self._check_none_missing(after, [row[0] for row in rows])
-            else:
-                rows = content.all_rows("evaluations")
-                self._check_none_missing(0, [row[0] for row in rows])
-            records = [_record("evaluations", row) for row in rows]
-            return tuple(
-                ArchivePoint(
-                    id=record["id"],
-                    level=record["level"],
-                    origin=record["origin"],
-                    generation=record["generation"],
-                    objectives=(record["first_objective"], record["second_objective"])
-                    if record["status"] == "ok"
-                    else None,
-                    feasible=bool(record["feasible"]),
-                    predicted=record["surface"] > 0,
-                )
-                for record in records
-                if (record["origin"] == "hand") == by_hand and level in (None, record["level"])
-            )
+            rows = self._hand_rows(content, after) if by_hand else self._search_rows(content, after)
+            points = map(_point, rows)
+            return tuple(point for point in points if level in (None, point.level))
+
+    def news(self, after: int, known: Container[int]) -> Iterator[tuple[ArchivePoint, Evaluation]]:
+        """Designs of the search and by hand that are not known yet, each with all its numbers, which are not kept here:
+        those of a whole run are some 200 MB.
+
+        Args:
+            after: as in ``archive``, of the search's.
+            known: ids that are passed over.
+        """
+        with self._reading() as content:
+            errors = known_errors(content.values())
+            for row in (*self._search_rows(content, after), *self._hand_rows(content)):
+                if row[0] not in known:
+                    evaluation = self._placed(content.document(row))
+                    yield _point(row), _with_errors(evaluation, errors.get(str(row[0])))
+
+    def _hand_rows(self, content: RunContent, after: int = 0) -> list[tuple[Any, ...]]:
+        rows = content.sorted_rows("evaluations", "WHERE id > ?", (max(after, HAND_IDS_BEGIN - 1),))
+        if after < HAND_IDS_BEGIN and len(rows) != content.tally.counts.get("hand", 0):
+            raise DamagedRunError(self.path, "a design made by hand is missing")
+        return [row for row in rows if row[_ORIGIN] == "hand"]
+
+    def _search_rows(self, content: RunContent, after: int) -> list[tuple[Any, ...]]:
+        if after:
+            which = "WHERE (id > ? OR id < ?) AND id < ?"
+            rows = content.sorted_rows("evaluations", which, (after, FIRST_SEARCH_ID, HAND_IDS_BEGIN))
+        else:
+            rows = content.all_rows("evaluations")
+        self._check_none_missing(after, [row[0] for row in rows])
+        return [row for row in rows if row[_ORIGIN] != "hand"]
 
     def _check_none_missing(self, after: int, ids: Sequence[int]) -> None:
         """The designs of finished generations are all there: ids of the search leave no gap."""
@@ -485,11 +489,27 @@ class RunReader:
         return found.get(level)
 
 
-def _with_errors(record: DesignRecord, fields: Mapping[str, Any] | None) -> DesignRecord:
-    if fields is None or not record.evaluation.ok:
-        return record
-    return dataclasses.replace(
-        record, evaluation=dataclasses.replace(record.evaluation, **fields, errors_source="solved")
+def _with_errors(evaluation: Evaluation, fields: Mapping[str, Any] | None) -> Evaluation:
+    if fields is None or not evaluation.ok:
+        return evaluation
+    return dataclasses.replace(evaluation, **fields, errors_source="solved")
+
+
+def _refined(record: DesignRecord, fields: Mapping[str, Any] | None) -> DesignRecord:
+    evaluation = _with_errors(record.evaluation, fields)
+    return record if evaluation is record.evaluation else dataclasses.replace(record, evaluation=evaluation)
+
+
+def _point(row: Sequence[Any]) -> ArchivePoint:
+    record = _record("evaluations", row)
+    return ArchivePoint(
+        id=record["id"],
+        level=record["level"],
+        origin=record["origin"],
+        generation=record["generation"],
+        objectives=(record["first_objective"], record["second_objective"]) if record["status"] == "ok" else None,
+        feasible=bool(record["feasible"]),
+        predicted=record["surface"] > 0,
     )
 
 

@@ -55,6 +55,7 @@ def everything(path: Path) -> dict[str, Any]:
     ask("generations", run.generation_records)
     ask("archive", run.archive)
     ask("by hand", run.by_hand)
+    ask("news", lambda: [evaluation.as_dict() for _, evaluation in run.news(0, ())])
     ask("failures", run.failures)
     ask("front", run.front)
     ask("members", lambda: run.members(3))

@@ -116,6 +116,9 @@ def test_3_one_record_a_design_and_level_and_hand_made_designs_apart(path: Path)
     run = open_run(path)
     assert [record.id for record in run.by_hand()] == [number, number + 1]
     assert [point.id for point in run.archive()] == [1, 2]
+    news = [(point.id, evaluation) for point, evaluation in run.news(0, {2})]
+    assert news == [(record.id, record.evaluation) for record in (*run.designs([1]), *run.by_hand())]
+    assert not list(run.news(0, {1, 2, number, number + 1}))
     assert run.design(number).origin == "hand"
 
 

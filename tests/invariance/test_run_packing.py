@@ -62,6 +62,19 @@ def test_any_document_comes_back_whatever_the_dictionary_was() -> None:
             assert exact(there_and_back(data, dictionary)) == exact(data)
 
 
+def test_documents_of_one_form_share_nothing_but_their_words() -> None:
+    plain = document()
+    dictionary = dictionary_of(plain)
+    lines = [[], ["level 1: 0.5 % off", 'a line with "warnings":[] in it'], ["ends with a ]"], []]
+    given = [{**plain, "elapsed": 0.1 + place, "warnings": line} for place, line in enumerate(lines)]
+    back = [there_and_back(data, dictionary) for data in given]
+    back[0]["conditions"][0].clear()
+    back[0]["open_water"]["advance_coefficient"].append(9.0)
+    back[0]["warnings"].append("mine")
+    assert [exact(data) for data in back[1:]] == [exact(data) for data in given[1:]]
+    assert list(back[1]) == [*(key for key in plain if key != "variables"), "variables"]
+
+
 @pytest.mark.parametrize("number", [float("nan"), float("inf")])
 def test_what_is_no_number_is_refused(number: float) -> None:
     with pytest.raises(ValueError, match="not finite"):

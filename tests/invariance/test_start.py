@@ -35,6 +35,17 @@ def test_one_answer_loads_its_solvers_alone() -> None:
     assert not loaded & set(NOT_FOR_ONE_ANSWER)
 
 
+def test_a_front_that_has_its_errors_is_shown_without_a_solver() -> None:
+    command = (
+        "import sys; from hpsop_core.cli.main import main; from hpsop_core.assets import asset_path;"
+        "main(['show', str(asset_path('demo') / 'dtc-p4119.hpsop'), '--front']); print(*sys.modules)"
+    )
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True)
+    loaded = set(done.stdout.splitlines()[-1].split())
+    assert "hpsop_core.evaluation.stated_errors" in loaded
+    assert not loaded & {*NOT_FOR_ONE_ANSWER, "scipy.interpolate"} - {"hpsop_core.runs"}
+
+
 def _commands(parser: argparse.ArgumentParser) -> set[str]:
     actions = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
     return {name for action in actions for name in action.choices}
