@@ -27,6 +27,7 @@ from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.reference import reference_for
 from hpsop_core.evaluation.result import Evaluation, Ok
 from hpsop_core.runs.controller import optimize
+from hpsop_core.runs.parcels import parcel_of, parcel_task
 from hpsop_core.runs.tasks import Physics, evaluation_task
 
 POPULATION = 50
@@ -82,9 +83,11 @@ def main() -> None:
         ideal = math.ceil(POPULATION / workers) * asked.seconds
         print(f"{workers:3d} workers: {found:7.2f} s a generation, {100.0 * ideal / found:5.1f} % of it evaluations")
     reference = reference_for(case, 2)
-    task = pickle.dumps((evaluation_task, evaluate, case, case.initial.variables, 2, reference))
+    parcel = parcel_of(evaluate, case, reference)
+    task = pickle.dumps((parcel_task, parcel.label, case.initial.variables, 2))
+    once = len(parcel.content or b"")
     result = evaluation_task(evaluate, case, case.initial.variables, 2, reference)
-    print(f"a design on its way to a worker {len(task)} bytes, back {len(result)} bytes")
+    print(f"a design on its way to a worker {len(task)} bytes ({once} once), back {len(result)} bytes")
 
 
 if __name__ == "__main__":

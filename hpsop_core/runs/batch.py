@@ -15,7 +15,8 @@ from typing import Any, TypeAlias
 from hpsop_core.case.case import Case
 from hpsop_core.optimization.problem import Candidate
 from hpsop_core.runs.control import RunControl
-from hpsop_core.runs.tasks import EvaluateFunction, WarmUpFunction, evaluation_task, failure_text, warm_up_task
+from hpsop_core.runs.parcels import UNKNOWN, Parcel, parcel_of, parcel_task
+from hpsop_core.runs.tasks import EvaluateFunction, WarmUpFunction, failure_text, warm_up_task
 from hpsop_core.runs.workers import Workers, WorkersLostError
 
 _TICK = 0.1  # seconds between looks at the controls while evaluations run
@@ -25,6 +26,7 @@ _LAST_RESULTS = 5.0  # seconds to collect what else comes from a pool that broke
 _DEATHS_ALLOWED = 2
 _TIMEOUTS_ALLOWED = 2
 _QUICK = 0.05  # seconds: evaluations below have a spare one queued behind each; see ``BatchEvaluator._room``
+_GATHERING = 0.05  # seconds within which quick evaluations are stored together
 _RECONNECT_INTERVAL = 2.0  # seconds between tries to reach a cluster that does not answer
 
 
@@ -64,6 +66,7 @@ class _Job:
     deaths: int = 0
     timeouts: int = 0
     alone: bool = False
+    unknown: bool = False  # to a worker: its parcel goes along
     started: float | None = None
 
 
@@ -80,6 +83,9 @@ class BatchEvaluator:
       evaluated again one at a time, so the guilty one is known for certain: if its worker dies then too, it is
       recorded as failed. So the result does not depend on the number of workers.
     * A cluster that does not answer any more: the run is paused with the reason, and goes on when it answers again.
+
+    Results are handed out when the workers have their next designs, and quick ones together, a twentieth of a second
+    after the first of them at the latest: a transaction of the run file costs as much as ten records.
 
     Args:
         workers: where to evaluate.
@@ -111,6 +117,10 @@ class BatchEvaluator:
         self._queue: deque[_Job] = deque()
         self._suspects: deque[_Job] = deque()
         self._under_way: dict[Future[str], _Job] = {}
+        self._parcels: dict[int, Parcel] = {}
+        self._finished: FinishedFunction = lambda results: None
+        self._results: list[tuple[int, Candidate, str]] = []
+        self._first_result = 0.0
 
     def run(
         self,
@@ -122,7 +132,8 @@ class BatchEvaluator:
 
         Args:
             tasks: (id, candidate, reference of its level).
-            finished: called with what has come in: for each its id, candidate, and the evaluation's JSON text.
+            finished: called with what has come in, quick evaluations gathered: for each its id, candidate, and the
+                evaluation's JSON text.
             paused: called with True when nothing is under way any more because of a pause, and with False when it is
                 over.
 
@@ -135,13 +146,21 @@ class BatchEvaluator:
         self._queue = deque(_Job(number, candidate, reference) for number, candidate, reference in tasks)
         self._suspects = deque()
         self._under_way = {}
+        # By identity: the tasks hold their references as long as this goes on.
+        self._parcels = {
+            id(reference): parcel_of(self._evaluate, self._case, reference)
+            for reference in {id(reference): reference for _, _, reference in tasks}.values()
+        }
+        self._finished = finished
+        self._results = []
         self._looked = time.monotonic()
         try:
             while self._queue or self._suspects or self._under_way:
                 if self._control.stopped:
-                    self._drain(finished)
+                    self._drain()
                     return False
                 if self._control.paused and not self._under_way:
+                    self._hand_out()
                     paused(True)
                     self._control.wait_while_paused()
                     paused(False)
@@ -150,7 +169,9 @@ class BatchEvaluator:
                     self._workers.look()
                     if not self._control.paused:
                         self._submit()
-                    self._collect(finished)
+                    if self._is_due():
+                        self._hand_out()
+                    self._collect()
                 except WorkersLostError as error:
                     self._requeue()
                     reconnect(self._workers, self._control, self._lost, str(error))
@@ -158,7 +179,22 @@ class BatchEvaluator:
             # A full disk that the user gave up on, Ctrl-C: nothing may go on computing behind the run's back.
             self._abandon()
             raise
+        self._hand_out()
         return True
+
+    def _is_due(self) -> bool:
+        """Whether what has come in is to be handed out now."""
+        return self._typical >= _QUICK or time.monotonic() - self._first_result >= _GATHERING
+
+    def _hand_out(self) -> None:
+        if self._results:
+            results, self._results = self._results, []
+            self._finished(results)
+
+    def _keep(self, result: tuple[int, Candidate, str]) -> None:
+        if not self._results:
+            self._first_result = time.monotonic()
+        self._results.append(result)
 
     def _submit(self) -> None:
         if self._suspects:
@@ -214,31 +250,35 @@ class BatchEvaluator:
             self._workers.warm(
                 candidate.level, self._control, warm_up_task, self._warm_up, self._case, candidate.level, job.reference
             )
-        arguments = (self._evaluate, self._case, candidate.variables, candidate.level, job.reference)
-        return self._workers.submit(evaluation_task, *arguments)
+        parcel = self._parcels[id(job.reference)]
+        return self._workers.submit(
+            parcel_task, parcel if job.unknown else parcel.label, candidate.variables, candidate.level
+        )
 
     def _queue_again(self, job: _Job) -> None:
         # A suspect stays one.
         (self._suspects if job.deaths or job.timeouts else self._queue).appendleft(job)
 
     def _requeue(self) -> None:
+        self._hand_out()
         for job in sorted(self._under_way.values(), key=lambda job: -job.number):
             self._queue_again(job)
         self._under_way = {}
 
-    def _collect(self, finished: FinishedFunction) -> None:
+    def _collect(self) -> None:
         if not self._under_way:
             return
-        concurrent.futures.wait(self._under_way, timeout=_TICK, return_when=concurrent.futures.FIRST_COMPLETED)
-        if self._take_finished(finished):
+        longest = min(_TICK, _GATHERING) if self._results else _TICK
+        concurrent.futures.wait(self._under_way, timeout=longest, return_when=concurrent.futures.FIRST_COMPLETED)
+        if self._take_finished():
             if not self._workers.blamable:
                 self._requeue()
                 self._workers.rebuild()
                 return
             # Others of the broken pool may have finished; what has not is a suspect.
             concurrent.futures.wait(self._under_way, timeout=_LAST_RESULTS)
-            self._take_finished(finished)
-            self._blame(finished)
+            self._take_finished()
+            self._blame()
             return
         self._allow_for_stalls()
         now = time.monotonic()
@@ -253,7 +293,7 @@ class BatchEvaluator:
                 job.timeouts += 1
                 if job.timeouts >= _TIMEOUTS_ALLOWED:
                     reason = f"took longer than the limit of {self._limit:g} s, twice"
-                    finished([self._failed(job, "time-out", reason)])
+                    self._keep(self._failed(job, "time-out", reason))
                 else:
                     self._suspects.append(job)
             self._requeue()
@@ -269,10 +309,9 @@ class BatchEvaluator:
                 if job.started is not None:
                     job.started += stalled
 
-    def _take_finished(self, finished: FinishedFunction) -> bool:
-        """Hand out results, those that have come in together at once; True if a worker died."""
+    def _take_finished(self) -> bool:
+        """Keep the results that have come in; True if a worker died."""
         broken = False
-        results: list[tuple[int, Candidate, str]] = []
         for future in [future for future in self._under_way if future.done()]:
             try:
                 error = future.exception()
@@ -287,31 +326,34 @@ class BatchEvaluator:
                 broken = True
                 continue
             job = self._under_way.pop(future)
+            if error is None and future.result() == UNKNOWN:
+                job.unknown = True
+                self._queue_again(job)
+                continue
             if job.started is not None:
                 took = time.monotonic() - job.started
                 self._typical = took if self._typical == math.inf else 0.8 * self._typical + 0.2 * took
             if error is None:
-                results.append((job.number, job.candidate, future.result()))
+                self._keep((job.number, job.candidate, future.result()))
             elif type(error).__name__ == "KilledWorker":
                 # Dask has tried it on several workers already and knows for certain that this one was to blame.
-                results.append(self._failed(job, "worker", "its worker processes died"))
+                self._keep(self._failed(job, "worker", "its worker processes died"))
             else:
                 # SystemExit, or a result that cannot be pickled.
                 text = " ".join(f"{type(error).__name__}: {error}".split())
-                results.append(self._failed(job, "worker", text))
-        if results:
-            finished(results)
+                self._keep(self._failed(job, "worker", text))
         self._start_clocks()
         return broken
 
-    def _blame(self, finished: FinishedFunction) -> None:
+    def _blame(self) -> None:
         for job in sorted(self._under_way.values(), key=lambda job: job.number):
             job.deaths += 1
             if job.alone and job.deaths >= _DEATHS_ALLOWED:
-                finished([self._failed(job, "worker", "its worker process died twice")])
+                self._keep(self._failed(job, "worker", "its worker process died twice"))
             else:
                 self._suspects.append(job)
         self._under_way = {}
+        self._hand_out()
         self._workers.rebuild()
 
     def _failed(self, job: _Job, stage: str, reason: str) -> tuple[int, Candidate, str]:
@@ -320,10 +362,12 @@ class BatchEvaluator:
         text = failure_text(self._case, candidate.variables, candidate.level, stage, reason, elapsed)
         return job.number, candidate, text
 
-    def _drain(self, finished: FinishedFunction) -> None:
+    def _drain(self) -> None:
         """The run ends: keep what finishes within a moment, drop the rest."""
+        self._hand_out()
         concurrent.futures.wait(self._under_way, timeout=_STOP_GRACE)
-        self._take_finished(finished)
+        self._take_finished()
+        self._hand_out()
         self._abandon()
 
     def _abandon(self) -> None:

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import contextlib
 
-from hpsop_core.runs import tasks  # noqa: F401 - imported for its effect
+from hpsop_core.runs import parcels  # noqa: F401 - imported for its effect
 
 with contextlib.suppress(ImportError):
     # Without the solvers (a partial installation) the first evaluation says what is missing; here nobody would hear it.

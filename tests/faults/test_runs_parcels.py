@@ -1,0 +1,113 @@
+"""What all designs share travels to each worker once, and results that come quickly are stored together."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import time
+from collections.abc import Callable, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from typing import Any
+
+from quick_physics import evaluate
+from run_files import small_case
+
+from hpsop_core.case.case import Case
+from hpsop_core.case.variables import DesignVariables
+from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.optimization.problem import Candidate
+from hpsop_core.runs import parcels
+from hpsop_core.runs.batch import BatchEvaluator
+from hpsop_core.runs.control import RunControl
+from hpsop_core.runs.parcels import UNKNOWN, Parcel, parcel_of, parcel_task
+
+CASE = small_case()
+
+
+def slow(case: Case, variables: DesignVariables, level: int, reference: Any) -> Evaluation:
+    """As slow as one of level 2."""
+    time.sleep(0.06)
+    return evaluate(case, variables, level, None)
+
+
+def quick(case: Case, variables: DesignVariables, level: int, reference: Any) -> Evaluation:
+    """As quick as one of level 1, with the reference's word in its warnings."""
+    time.sleep(0.002)
+    return dataclasses.replace(evaluate(case, variables, level, None), warnings=(str(reference),))  # type: ignore[type-var]
+
+
+class _Threads:
+    """Two workers that share their memory; what is sent to them is counted."""
+
+    slots, description, blamable, versions = 2, "threads", True, {}  # type: ignore[var-annotated]
+
+    def __init__(self) -> None:
+        self.pool = ThreadPoolExecutor(2)
+        self.sent: list[str] = []
+
+    def look(self) -> None:
+        """They are there."""
+
+    def warm(self, *arguments: Any) -> None:
+        """They are warm."""
+
+    def submit(self, function: Callable[..., Any], *arguments: Any) -> Future[Any]:
+        parcel = arguments[0]
+        assert isinstance(parcel, Parcel)
+        self.sent.append(parcel.name if parcel.content is not None else "")
+        return self.pool.submit(function, *arguments)
+
+    def rebuild(self) -> None:
+        raise AssertionError("nothing broke")
+
+    def close(self) -> None:
+        self.pool.shutdown()
+
+
+def evaluated(function: Any, references: Sequence[str]) -> tuple[_Threads, list[list[int]], dict[int, Any]]:
+    workers, groups, documents = _Threads(), [], {}
+    variables = CASE.initial.variables
+    tasks = [
+        (number, Candidate(1, variables.replaced({"draft": 14.0 + 0.01 * number}), "sample"), reference)
+        for number, reference in enumerate(references)
+    ]
+
+    def finished(results: Sequence[tuple[int, Candidate, str]]) -> None:
+        groups.append([number for number, _, _ in results])
+        documents.update((number, json.loads(text)) for number, _, text in results)
+
+    try:
+        assert BatchEvaluator(workers, function, CASE, RunControl()).run(tasks, finished, lambda paused: None)
+    finally:
+        workers.close()
+    return workers, groups, documents
+
+
+def test_a_parcel_is_asked_for_by_who_does_not_have_it() -> None:
+    parcel, variables = parcel_of(evaluate, CASE, None), CASE.initial.variables
+    parcels._opened.clear()
+    assert parcel_task(parcel.label, variables, 1) == UNKNOWN
+    text = parcel_task(parcel, variables, 1)
+    assert json.loads(text)["objectives"] == evaluate(CASE, variables, 1, None).objectives
+    assert json.loads(parcel_task(parcel.label, variables, 1))["status"] == "ok"
+    for number in range(9):
+        parcel_task(parcel_of(evaluate, CASE, number), variables, 1)
+    assert len(parcels._opened) < 9
+    assert parcel_task(parcel.label, variables, 1) == UNKNOWN
+
+
+def test_each_reference_is_sent_once_and_each_design_gets_its_own() -> None:
+    references = ["learnt once", "learnt twice"] * 30
+    workers, groups, documents = evaluated(quick, references)
+    assert sorted(number for group in groups for number in group) == list(range(60))
+    assert [documents[number]["warnings"] for number in range(60)] == [[word] for word in references]
+    # A spare one behind each of the two may have asked for it too.
+    assert sum(name != "" for name in workers.sent) <= 8
+    # 60 of 2 ms on two workers: about 60 ms, and one transaction each 50 ms, not 60 of them.
+    assert len(groups) < 30
+
+
+def test_slow_results_are_stored_as_they_come() -> None:
+    _, groups, documents = evaluated(slow, ["none"] * 6)
+    assert len(documents) == 6
+    assert len(groups) >= 3
