@@ -30,7 +30,7 @@ def computed(case: Case) -> dict[str, Any]:
         return {
             # Also a learnt case is asked for one factor, by --set and on the page.
             shipped_calibration.INITIAL: list(initial_true_waves(case, volume)),
-            shipped_calibration.LEARNT: asdict(learn_correction(case, volume, case.speeds)),
+            shipped_calibration.LEARNT: asdict(learn_correction(case, volume, case.speeds).with_kernels()),
         }
     return {}
 

@@ -80,48 +80,89 @@ def fit(inputs: Array, outputs: Array) -> GaussianProcess | None:
     Returns:
         The regression; None where the data have none (fewer than four points more than inputs, or no likelihood).
     """
-    points, values = np.asarray(inputs, dtype=np.float64), np.asarray(outputs, dtype=np.float64)
-    count, dimensions = points.shape
-    if count < dimensions + 4:
+    data = _Data.of(inputs, outputs)
+    if data is None:
         return None
-    lower, extent = points.min(axis=0), np.ptp(points, axis=0)
-    extent = np.where(extent > 1e-9 * np.maximum(1.0, np.abs(lower)), extent, np.inf)
-    scaled = (points - lower) / extent
-    centre = values.mean(axis=0)
-    size = np.std(values, axis=0)
-    size = np.where(size > 0.0, size, 1.0)
-    normal = (values - centre) / size
-    squares = (scaled[:, None, :] - scaled[None, :, :]) ** 2
+    squares = (data.points[:, None, :] - data.points[None, :, :]) ** 2
+    dimensions = data.points.shape[1]
     bounds = [tuple(np.log(_SCALES))] * dimensions + [tuple(np.log(_NUGGETS))]
     best: tuple[float, Array] | None = None
     for scale, nugget in _STARTS:
         start = np.log([scale] * dimensions + [nugget])
         found = minimize(
-            _loss, start, (squares, normal), jac=True, method="L-BFGS-B", bounds=bounds, options={"maxiter": _STEPS}
+            _loss,
+            start,
+            (squares, data.normal),
+            jac=True,
+            method="L-BFGS-B",
+            bounds=bounds,
+            options={"maxiter": _STEPS},
         )
         if np.isfinite(found.fun) and (best is None or found.fun < best[0]):
             best = float(found.fun), found.x
     if best is None:
         return None
-    scales, nugget = np.exp(best[1][:-1]), float(np.exp(best[1][-1]))
+    return _regression(data, np.exp(best[1][:-1]), float(np.exp(best[1][-1])))
+
+
+@one_blas_thread()
+def refitted(inputs: Array, outputs: Array, scales: Array, nugget: float) -> GaussianProcess | None:
+    """The regression that ``fit`` gave for the same data, with the kernel that it found; in a hundredth of its time.
+
+    Args:
+        inputs, outputs: as of ``fit``.
+        scales, nugget: of its result.
+    """
+    data = _Data.of(inputs, outputs)
+    return None if data is None else _regression(data, np.asarray(scales, dtype=np.float64), nugget)
+
+
+@dataclass(frozen=True, eq=False)
+class _Data:
+    """What is regressed, scaled: inputs to their box, outputs to mean 0 and deviation 1."""
+
+    lower: Array
+    extent: Array
+    points: Array
+    centre: Array
+    size: Array
+    normal: Array
+
+    @classmethod
+    def of(cls, inputs: Array, outputs: Array) -> _Data | None:
+        """None where there are fewer than four points more than inputs."""
+        points, values = np.asarray(inputs, dtype=np.float64), np.asarray(outputs, dtype=np.float64)
+        count, dimensions = points.shape
+        if count < dimensions + 4:
+            return None
+        lower, extent = points.min(axis=0), np.ptp(points, axis=0)
+        extent = np.where(extent > 1e-9 * np.maximum(1.0, np.abs(lower)), extent, np.inf)
+        centre = values.mean(axis=0)
+        size = np.std(values, axis=0)
+        size = np.where(size > 0.0, size, 1.0)
+        return cls(lower, extent, (points - lower) / extent, centre, size, (values - centre) / size)
+
+
+def _regression(data: _Data, scales: Array, nugget: float) -> GaussianProcess | None:
+    count, size = len(data.points), data.size
     try:
-        factor = cho_factor(_correlation(scaled, scaled, scales) + nugget * np.eye(count), lower=True)
+        factor = cho_factor(_correlation(data.points, data.points, scales) + nugget * np.eye(count), lower=True)
     except LinAlgError:
         return None
-    mean, weights, variance = _concentrated(factor, normal)
+    mean, weights, variance = _concentrated(factor, data.normal)
     inverse = cho_solve(factor, np.eye(count), check_finite=False)
     # Without a point the others' mean is another one too.
     sums = inverse.sum(axis=1)
     kept = (np.diag(inverse) - sums**2 / np.sum(sums))[:, None]
     return GaussianProcess(
-        lower=lower,
-        extent=extent,
-        points=scaled,
+        lower=data.lower,
+        extent=data.extent,
+        points=data.points,
         scales=scales,
         nugget=nugget,
         factor=np.tril(factor[0]),
         weights=weights * size,
-        mean=centre + size * mean,
+        mean=data.centre + size * mean,
         variance=variance * size**2,
         held_out=weights / kept * size,
         held_out_deviation=np.sqrt(variance / kept) * size,

@@ -7,6 +7,7 @@ ranking of forms of other fullness wrong. The logarithm of the factor is regress
 
 from __future__ import annotations
 
+import dataclasses
 import math
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass
@@ -18,7 +19,7 @@ import numpy as np
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import SolverFailure
-from hpsop_core.evaluation.gaussian_process import GaussianProcess, fit
+from hpsop_core.evaluation.gaussian_process import GaussianProcess, fit, refitted
 from hpsop_core.evaluation.hull_answer import build_hull, hull_variables, wave_answers
 from hpsop_core.evaluation.levels import FAST, TRUTH
 from hpsop_core.evaluation.surface import hull_inputs
@@ -37,10 +38,13 @@ class WaveCorrection:
     Attributes:
         inputs: (conditions, hulls, numbers) of ``hull_inputs``.
         logarithms: (conditions, hulls) ln of level 2's wave coefficient over level 1's.
+        kernels: (conditions, numbers + 1) length scales and nugget of each regression where they have been found
+            before, as in the shipped cases' files; empty where each process finds them: a third of a second.
     """
 
     inputs: tuple[Rows, ...]
     logarithms: Rows
+    kernels: Rows = ()
 
     def __hash__(self) -> int:
         # Asked for at every evaluation; the inputs, ten times as many numbers, tell nothing apart that these do not.
@@ -50,7 +54,12 @@ class WaveCorrection:
     def from_dict(cls, data: Mapping[str, Any]) -> WaveCorrection:
         """What ``dataclasses.asdict`` described, from JSON."""
         inputs = tuple(tuple(tuple(row) for row in rows) for rows in data["inputs"])
-        return cls(inputs, tuple(tuple(row) for row in data["logarithms"]))
+        return cls(inputs, *(tuple(tuple(row) for row in data.get(name, ())) for name in ("logarithms", "kernels")))
+
+    def with_kernels(self) -> WaveCorrection:
+        """The same with the kernels of its regressions."""
+        found = (tuple(map(float, (*regression.scales, regression.nugget))) for regression in _fitted(self))
+        return dataclasses.replace(self, kernels=tuple(found))
 
     def factors(self, hull: Hull, variables: DesignVariables, froude_numbers: Sequence[float]) -> tuple[float, ...]:
         """The factor on level 1's wave resistance at each condition's Froude number."""
@@ -65,8 +74,10 @@ class WaveCorrection:
 @lru_cache(maxsize=8)
 def _fitted(correction: WaveCorrection) -> tuple[GaussianProcess, ...]:
     regressions = []
-    for rows, logarithms in zip(correction.inputs, correction.logarithms, strict=True):
-        regression = fit(np.array(rows), np.array(logarithms)[:, None])
+    kernels = correction.kernels or (None,) * len(correction.inputs)
+    for rows, logarithms, kernel in zip(correction.inputs, correction.logarithms, kernels, strict=True):
+        data = np.array(rows), np.array(logarithms)[:, None]
+        regression = fit(*data) if kernel is None else refitted(*data, np.array(kernel[:-1]), kernel[-1])
         if regression is None:
             raise SolverFailure("wave_calibration", "nothing can be learnt from the hulls of this space")
         regressions.append(regression)

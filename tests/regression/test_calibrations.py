@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 import pytest
 
 from hpsop_core.case.case import SHIPPED_CASES, Case, load_case
-from hpsop_core.evaluation import physics, shipped_calibration
+from hpsop_core.evaluation import physics, shipped_calibration, wave_correction
+from hpsop_core.evaluation.wave_correction import WaveCorrection
 from tools.calibrations import FOLDER, computed
 
 CALIBRATED = [name for name in SHIPPED_CASES if load_case(name).constants.wave_calibration in ("level2", "learnt")]
@@ -33,6 +36,19 @@ def test_all_that_is_shipped_is_what_is_computed(name: str) -> None:
         for rows, others in zip(kept["inputs"], content["inputs"], strict=True):
             for one, other in zip(rows, others, strict=True):
                 assert one == pytest.approx(other, rel=1e-9, abs=1e-12)
+
+
+def test_shipped_kernels_are_those_that_are_found() -> None:
+    kept = shipped_calibration.shipped(load_case("dtc-p4119"), shipped_calibration.LEARNT)
+    shipped = WaveCorrection.from_dict(kept)
+    assert shipped.kernels
+    found = dataclasses.replace(shipped, kernels=()).with_kernels()
+    # The likelihood is flat about its top: another machine's search ends where it is as good.
+    for one, other in zip(wave_correction._fitted(shipped), wave_correction._fitted(found), strict=True):
+        at = one.lower + 0.37 * one.extent
+        assert one.mean_at(at) == pytest.approx(other.mean_at(at), abs=1e-4)
+    # On the machine that wrote them they are the very same; a run that was begun before goes on with its own.
+    assert WaveCorrection.from_dict(dataclasses.asdict(found)) == found
 
 
 def test_nothing_is_shipped_for_a_case_that_is_not() -> None:
