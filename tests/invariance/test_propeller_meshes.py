@@ -17,11 +17,15 @@ from hpsop_core.geometry.clearance import (
 )
 from hpsop_core.geometry.hull.hull import load_parent_hull
 from hpsop_core.geometry.hull.mesh import underwater_mesh
+from hpsop_core.geometry.nurbs import NurbsSurface
+from hpsop_core.geometry.propeller import closed
 from hpsop_core.geometry.propeller.hub import hub_of
 from hpsop_core.geometry.propeller.mesh import propeller_mesh, propeller_view_parts
 from hpsop_core.geometry.propeller.nurbs import blade_nurbs, hub_nurbs, propeller_surfaces
-from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
+from hpsop_core.geometry.propeller.propeller import Propeller, load_propeller, propeller_family
+from hpsop_core.geometry.propeller.sections import cosine_chord_fractions
 from hpsop_core.geometry.propeller.surface import blade_points
+from hpsop_core.hydro.blade_panels.grid import blade_grid, to_propeller_axes
 
 
 @pytest.mark.parametrize("blades", [2, 3, 5, 7])
@@ -114,6 +118,35 @@ def test_blade_nurbs_keeps_the_sections(blades: int, area: float) -> None:
     # conics: no error but rounding (whose root stands at the pole of the cap)
     outline = 4.5 * hub_of(propeller).radius_at(points[:, 0, 0] / 4.5)
     assert np.allclose(radius, outline[:, None], atol=1e-6)
+
+
+@pytest.mark.parametrize("skew_degrees", [0.0, 40.0])
+def test_panels_stand_on_the_surface_with_its_edges_closed(
+    skew_degrees: float, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    parent = load_propeller()
+    table = replace(parent, skew=np.radians(skew_degrees) * np.clip((parent.radius_ratio - 0.35) / 0.65, 0.0, 1.0) ** 2)
+    propeller = propeller_family(table, 9.0, 4)
+    grid = blade_grid(propeller, 24, 10)
+    corners = to_propeller_axes(grid.surface.corners)
+    np.testing.assert_array_equal(corners[0], corners[-1])
+    # The table's own sections, from which the panels are twice removed. Inside 0.9 R: beyond, the surface's tip has
+    # a chord of its own.
+    fractions = cosine_chord_fractions(13)
+    face, back = (blade_points(propeller.table.at(grid.radius_edges[:-3]), fractions, s) for s in (False, True))
+    own = np.concatenate([face[:, ::-1], back[:, 1:]], axis=1).transpose(1, 0, 2)
+    # 2 of R are 1 of D: the surface's own bound
+    assert np.max(np.linalg.norm(corners[:, :-3] - own, axis=2)) < 2.0 * 1e-4
+    # A surface that is moved takes its panels along, so they stand on nothing else.
+    true = closed.blade_surface
+
+    def moved(propeller: Propeller) -> NurbsSurface:
+        surface = true(propeller)
+        return replace(surface, control_points=surface.control_points + np.array([0.01, 0.0, 0.0]))
+
+    monkeypatch.setattr(closed, "blade_surface", moved)
+    elsewhere = to_propeller_axes(blade_grid(propeller, 24, 10).surface.corners)
+    np.testing.assert_allclose(elsewhere, corners + np.array([0.01, 0.0, 0.0]), atol=1e-12)
 
 
 def test_surfaces_stand_where_the_mesh_stands() -> None:

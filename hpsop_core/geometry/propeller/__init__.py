@@ -4,5 +4,6 @@
 * propeller: parents and their families (diameter, blades, pitch, area)
 * sections: thickness and mean line of a blade section; surface: points on the blade from both
 * hub: the hub's length and outline, and the fillet at the blades' roots
-* mesh: closed triangle meshes; nurbs: surfaces for exchange with CAD
+* nurbs: the blade's surface, which everything stands on, and the hub's; mesh: closed triangle meshes of them
+* closed: the blade's surface with sharp edges, for the solvers' panels
 """

@@ -1,8 +1,8 @@
-"""Blade and hub as NURBS surfaces: what is drawn, meshed and exchanged with CAD.
+"""Blade and hub as NURBS surfaces: what is drawn, meshed, panelled and exchanged with CAD.
 
 Metres, propeller axes. The blade's surface runs from a little inside the hub to the tip. Tip and trailing edge have a
-thickness (``EDGE_THICKNESS_RATIO``); the solvers' panels, which need a sharp trailing edge, come from the radial table
-that this surface interpolates. The fillet at the root is in the meshes only.
+thickness (``EDGE_THICKNESS_RATIO``), which `closed.py` takes away for the solvers' panels. The fillet at the root is in
+the meshes only.
 """
 
 from __future__ import annotations
@@ -30,7 +30,7 @@ from hpsop_core.typing_aliases import Array
 _DEGREE = 3
 _ROOT_DEPTH = 0.9
 _SPAN_STATIONS = 61
-_CHORD_STATIONS = 41
+_CHORD_STATIONS = 49
 
 
 @dataclass(frozen=True, eq=False)
@@ -74,7 +74,7 @@ def blade_outlines(propeller: Propeller, radii: Array, chord_points: int) -> Arr
 
 @lru_cache(maxsize=64)
 def blade_surface(propeller: Propeller) -> NurbsSurface:
-    """The key blade, m, propeller axes: a bicubic B-spline through 61 sections of 81 points.
+    """The key blade, m, propeller axes: a bicubic B-spline through 61 sections of 97 points.
 
     u runs from inside the hub to the tip with r/R = 1 - (1 - r0)(1 - u)^2, v from the trailing edge over the back to
     the leading edge (v = 1/2) and over the face to the trailing edge, even in the angle of the cosine spacing.

@@ -123,19 +123,27 @@ A blade that closes to nothing can be neither milled nor meshed; 9 mm on a prope
 """
 
 
+def edge_half_thickness(chord: Array, chord_fraction: Array) -> Array:
+    """Half of the edges' own thickness at fractions of a chord in tip radii, broadcast, in tip radii.
+
+    A quarter circle at the nose and constant behind it, to the trailing edge.
+    """
+    edge = EDGE_THICKNESS_RATIO
+    nose = np.clip(1.0 - chord * chord_fraction / edge, 0.0, 1.0)
+    return np.asarray(edge * np.sqrt(1.0 - nose**2))
+
+
 def finite_edge_points(sections: BladeSections, chord_fraction: Array) -> tuple[Array, Array, Array]:
     """Sections whose edges have a thickness: (s, eta of the back, eta of the face), each (nr, nc), in tip radii.
 
-    The half thickness is hypot(t yt, e g), with e half of ``EDGE_THICKNESS_RATIO`` and g a quarter circle of radius e
-    at the nose and 1 behind it: at the edges e, in the middle of a blade the table's own to a hundredth of e.
+    The half thickness is the root of the squares of the table's t yt and of ``edge_half_thickness``: at the edges the
+    latter, in the middle of a blade the table's own to a hundredth of it. `closed.py` takes it away again.
     """
     chord = 2.0 * sections.chord_ratio[:, None]
     fraction = np.asarray(chord_fraction, dtype=np.float64)
-    edge = EDGE_THICKNESS_RATIO
     along = chord * (fraction - 0.5)
-    nose = np.clip(1.0 - chord * fraction / edge, 0.0, 1.0)
     own = chord * sections.thickness_ratio[:, None] * half_thickness(fraction)
-    half = np.hypot(own, edge * np.sqrt(1.0 - nose**2))
+    half = np.hypot(own, edge_half_thickness(chord, fraction))
     camber = chord * sections.camber_ratio[:, None] * mean_line(fraction)
     return along, camber + half, camber - half
 

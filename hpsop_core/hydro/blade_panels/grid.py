@@ -7,7 +7,8 @@ theta in the sense of rotation. They mirror the propeller axes of `geometry.prop
 Blade: corners[i, j], i from the trailing edge along the face (pressure side) to the leading edge and back along the
 back (suction side), j from the hub to the tip; both spacings are cosines. Collocation points lie half way in i and, in
 j, at the cosine mid-point of the strip (the quadrature point of an elliptic loading; the centroid would give KT 5 %
-too high on ten strips). The tip is an edge of finite chord and no thickness: a tip of no chord would make the
+too high on ten strips). All are points of the blade's one surface, its edges closed
+(`geometry.propeller.closed`). The tip is an edge of finite chord and no thickness: a tip of no chord would make the
 sections of wide blades cut each other.
 """
 
@@ -17,16 +18,15 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from hpsop_core.geometry.propeller.propeller import BladeSections, Propeller
-from hpsop_core.geometry.propeller.sections import cosine_chord_fractions
-from hpsop_core.geometry.propeller.surface import blade_cylindrical
+from hpsop_core.geometry.propeller.closed import closed_sections
+from hpsop_core.geometry.propeller.propeller import Propeller
 from hpsop_core.hydro.blade_panels.settings import WakeSettings
 from hpsop_core.hydro.singularities.dipole_panels import PanelSet, panel_set
 from hpsop_core.typing_aliases import Array, IntArray
 
 STAGE = "blade_panels"
 TIP_CHORD_RADIUS = 0.995
-"""The tip edge has the chord that the table gives at this r/R."""
+"""The tip edge has the chord that the blade has at this r/R."""
 
 
 @dataclass(frozen=True)
@@ -122,41 +122,31 @@ def blade_grid(propeller: Propeller, chordwise_panels: int, radial_panels: int) 
         chordwise_panels: panels round a section (even).
         radial_panels: strips from hub to tip.
     """
-    edges, middle, fraction = cosine_stations(propeller.hub_ratio, 1.0, radial_panels)
-    sections = propeller.table.at(edges)
-    chord = np.array(sections.chord_ratio)
-    chord[-1] = float(propeller.table.at(np.array(TIP_CHORD_RADIUS)).chord_ratio)
-    thickness = np.array(sections.thickness_ratio)
-    thickness[-1] = 0.0
-    sections = replace(sections, chord_ratio=chord, thickness_ratio=thickness)
-    x, theta = _section_outline(sections, 1.0, chordwise_panels)
-    surface = strip_surface(to_cartesian(x, edges[None, :], theta), fraction)
-    thinning = np.ones(radial_panels)
-    thinning[-1] = 1.0 - fraction[-1]
+    strips = radial_panels
+    edges, middle, fraction = cosine_stations(propeller.hub_ratio, 1.0, strips)
     step = 0.02 * np.diff(edges)
-    outlines = []
-    for shift in (-step, 0.0 * step, step):
-        radius = middle + shift
-        outline = _section_outline(propeller.table.at(radius), thinning, chordwise_panels)
-        outlines.append(to_cartesian(outline[0], radius[None, :], outline[1]))
-    inner, at, outer = outlines
+    # corners, the section whose chord the tip gets, and three sections a strip for its normals
+    sections = closed_sections(
+        propeller,
+        np.concatenate([edges, [TIP_CHORD_RADIUS], middle - step, middle, middle + step]),
+        chordwise_panels // 2,
+    )
+    # the last strip thins out to nothing at the tip
+    thinning = np.ones(strips)
+    thinning[-1] = 1.0 - fraction[-1]
+    thickness = np.concatenate([np.ones(strips), [0.0, 1.0], np.tile(thinning, 3)])
+    chord_factor = np.ones(thickness.size)
+    chord_factor[strips] = sections.chord[strips + 1] / sections.chord[strips]
+    x, theta = (np.ascontiguousarray(part.T) for part in sections.outlines(thickness, chord_factor))
+    points = to_cartesian(x, sections.radius_ratio[None, :], theta)
+    surface = strip_surface(points[:, : strips + 1], fraction)
+    inner, at, outer = np.split(points[:, strips + 2 :], 3, axis=1)
     along_j = (outer[:-1] + outer[1:]) - (inner[:-1] + inner[1:])
     normal = np.cross(along_j, at[1:] - at[:-1])
     normal /= np.maximum(np.linalg.norm(normal, axis=2, keepdims=True), 1e-300)
     surface = replace(surface, normal=normal)
-    return BladeGrid(
-        surface, 0.5 * (at[1:] + at[:-1]), np.ascontiguousarray(x), np.ascontiguousarray(theta), edges, middle
-    )
-
-
-def _section_outline(sections: BladeSections, thickness_factor: Array | float, panels: int) -> tuple[Array, Array]:
-    """(x, theta), each (panels + 1, sections): from the trailing edge over the face to the nose and back."""
-    fractions = cosine_chord_fractions(panels // 2 + 1)
-    x_back, theta_back = blade_cylindrical(sections, fractions, True, thickness_factor)
-    x_face, theta_face = blade_cylindrical(sections, fractions, False, thickness_factor)
-    x = np.concatenate([x_face[:, ::-1], x_back[:, 1:]], axis=1).T
-    theta = np.concatenate([theta_face[:, ::-1], theta_back[:, 1:]], axis=1).T
-    return np.ascontiguousarray(x, dtype=np.float64), np.ascontiguousarray(theta, dtype=np.float64)
+    corner_x, corner_theta = (np.ascontiguousarray(part[:, : strips + 1]) for part in (x, theta))
+    return BladeGrid(surface, 0.5 * (at[1:] + at[:-1]), corner_x, corner_theta, edges, middle)
 
 
 def wake_angles(settings: WakeSettings) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 from hpsop_core.errors import InputError
 from hpsop_core.typing_aliases import Array
 
-SOLVER = "blade panels 1.1"
+SOLVER = "blade panels 1.2"
 WAKE_PITCH_RANGE = (0.52, 1.3)
 WAKE_PITCH_COUNT = 4
 """Tabulated wakes and the range of their pitch over the blade's pitch at 0.7 R. They lie at Chebyshev points of the

@@ -64,15 +64,15 @@ def panel_set(corners: Array) -> PanelSet:
     corners = np.ascontiguousarray(corners, dtype=np.float64)
     diagonal_1 = corners[:, 2] - corners[:, 0]
     diagonal_2 = corners[:, 3] - corners[:, 1]
-    area_vector = 0.5 * np.cross(diagonal_1, diagonal_2)
-    area = np.linalg.norm(area_vector, axis=1)
-    size = np.maximum(np.linalg.norm(diagonal_1, axis=1), np.linalg.norm(diagonal_2, axis=1))
+    area_vector = 0.5 * _cross(diagonal_1, diagonal_2)
+    area = _length(area_vector)
+    size = np.maximum(_length(diagonal_1), _length(diagonal_2))
     safe = np.maximum(area, 1e-300)
     normal = area_vector / safe[:, None]
-    along = np.where((np.linalg.norm(diagonal_1, axis=1) >= 0.5 * size)[:, None], diagonal_1, diagonal_2)
+    along = np.where((_length(diagonal_1) >= 0.5 * size)[:, None], diagonal_1, diagonal_2)
     along = along - np.sum(along * normal, axis=1)[:, None] * normal
-    e1 = along / np.maximum(np.linalg.norm(along, axis=1), 1e-300)[:, None]
-    e2 = np.cross(normal, e1)
+    e1 = along / np.maximum(_length(along), 1e-300)[:, None]
+    e2 = _cross(normal, e1)
     axes = np.stack([e1, e2, normal], axis=1)
     mean = corners.mean(axis=1)
     flat = np.einsum("nab,nkb->nka", axes, corners - mean[:, None, :])
@@ -102,18 +102,43 @@ def panel_set(corners: Array) -> PanelSet:
     )
 
 
+def _cross(a: Array, b: Array) -> Array:
+    """Vector products of (n, 3): numpy's takes as long again to look at shapes."""
+    return np.stack(
+        [
+            a[:, 1] * b[:, 2] - a[:, 2] * b[:, 1],
+            a[:, 2] * b[:, 0] - a[:, 0] * b[:, 2],
+            a[:, 0] * b[:, 1] - a[:, 1] * b[:, 0],
+        ],
+        axis=1,
+    )
+
+
+def _length(a: Array) -> Array:
+    """Lengths (n,) of (n, 3)."""
+    return np.asarray(np.sqrt(a[:, 0] ** 2 + a[:, 1] ** 2 + a[:, 2] ** 2))
+
+
 def _twist_moments(local: Array) -> list[Array]:
-    """First moments of the normal over bilinear panels; 2 x 2 Gauss points integrate them exactly."""
-    total = np.zeros((local.shape[0], 3, 3))
-    gauss = 0.5 + np.array([-0.5, 0.5]) / np.sqrt(3.0)
+    """First moments of the normal over bilinear panels.
+
+    With Q = m + e u + f v + h u v for u, v from -1/2 to 1/2 the normal e x f + u e x h + v h x f is linear, so the
+    integral of n (x) Q is (e x f) (x) m + ((e x h) (x) e + (h x f) (x) f)/12.
+    """
     a, b, c, d = (local[:, k] for k in range(4))
-    for u in gauss:
-        for v in gauss:
-            point = (1 - u) * (1 - v) * a + u * (1 - v) * b + u * v * c + (1 - u) * v * d
-            normal = np.cross((1 - v) * (b - a) + v * (c - d), (1 - u) * (d - a) + u * (c - b))
-            total += 0.25 * normal[:, :, None] * point[:, None, :]
-    xx, yy, zz = total[:, 0, 0], total[:, 1, 1], total[:, 2, 2]
-    return [-(xx + yy + zz), 3.0 * xx, 3.0 * yy, 3.0 * zz, 3.0 * (total[:, 0, 1] + total[:, 1, 0])]
+    middle, twist = 0.25 * (a + b + c + d), a - b + c - d
+    along_u, along_v = 0.5 * (b - a + c - d), 0.5 * (d - a + c - b)
+    terms = (
+        (_cross(along_u, along_v), middle),
+        (_cross(along_u, twist) / 12.0, along_u),
+        (_cross(twist, along_v) / 12.0, along_v),
+    )
+
+    def moment(i: int, j: int) -> Array:
+        return np.asarray(sum(normal[:, i] * point[:, j] for normal, point in terms))
+
+    xx, yy, zz = moment(0, 0), moment(1, 1), moment(2, 2)
+    return [-(xx + yy + zz), 3.0 * xx, 3.0 * yy, 3.0 * zz, 3.0 * (moment(0, 1) + moment(1, 0))]
 
 
 @njit()
