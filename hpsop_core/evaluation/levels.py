@@ -115,10 +115,11 @@ def _rankine_panels(
 
     try:
         settings = None
+        # What these two change is hundreds of times what single precision does.
         if refinement != 1.0:
-            settings = rankine.RankineSettings().refined(refinement)
+            settings = rankine.RankineSettings(single_precision=True).refined(refinement)
         elif widening != 1.0:
-            settings = rankine.RankineSettings().widened(widening)
+            settings = rankine.RankineSettings(single_precision=True).widened(widening)
         result = rankine.solve(hull, froude_numbers, settings)
     except InputError as problem:
         # Froude numbers follow from a design's length at fixed speed: out of range is that design's failure.

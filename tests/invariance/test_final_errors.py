@@ -70,9 +70,11 @@ def test_they_are_what_finer_solutions_change(design: Ok) -> None:
             )
             form = 0.02 * friction * dynamic
             in_total = np.sqrt((mesh * dynamic) ** 2 + (apart * dynamic) ** 2 + borders_in_total**2 + form**2)
+            # What is solved for its errors is solved in single precision: within 2e-5 of the waves, of which these
+            # errors are a tenth and more.
             for place in (1, 2):
-                assert design.errors[f"wave_coefficient_{place}"] == pytest.approx(expected[place - 1], rel=1e-6)
-                assert design.errors[f"total_resistance_{place}"] == pytest.approx(in_total[place - 1], rel=1e-6)
+                assert design.errors[f"wave_coefficient_{place}"] == pytest.approx(expected[place - 1], rel=2e-4)
+                assert design.errors[f"total_resistance_{place}"] == pytest.approx(in_total[place - 1], rel=2e-4)
     terms = {"finer": ("mesh", 1.5), "wider": ("domain", 1.5), "pressure": ("plane_against_pressure", 1.0)}
     for name, (term, factor) in terms.items():
         own, first = totals[name][:2], totals[name][2:]

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
+
 import numpy as np
 import pytest
 from scipy.linalg import solve as dense_solve
@@ -9,6 +11,7 @@ from scipy.stats import spearmanr
 
 from hpsop_core.geometry.hull.hull import Hull, load_parent_hull
 from hpsop_core.geometry.hull.panels import hull_panels
+from hpsop_core.hydro.rankine import many_speeds
 from hpsop_core.hydro.rankine import solver as rankine
 from hpsop_core.hydro.rankine.grid import surface_grid
 from hpsop_core.validation.rankine_studies import (
@@ -120,6 +123,40 @@ def test_single_precision_factor_is_not_felt(froude_number: float) -> None:
     ours = rankine.surface_strengths(system, gravity)
     exact = dense_solve(system.convection + gravity * system.vertical, system.forcing)
     assert np.max(np.abs(ours - exact)) < 1e-8 * np.max(np.abs(exact))
+
+
+@pytest.mark.parametrize("most_vectors", [80, 10])
+def test_speeds_from_one_factorisation_are_those_of_each_alone(
+    most_vectors: int, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Against a dense solution in double precision; with ten vectors none of the neighbours has converged."""
+    monkeypatch.setattr(many_speeds, "MOST_VECTORS", most_vectors)
+    random = np.random.default_rng(7)
+    count = 300
+    convection = 30.0 * np.eye(count) + random.normal(size=(count, count)) / np.sqrt(count)
+    vertical = np.diag(random.uniform(-4.0, 4.0, count)) + 0.1 * random.normal(size=(count, count)) / count
+    forcing = random.normal(size=count)
+    # Neighbours, one far away, and the same speed twice.
+    gravity = np.array([20.0, 31.0, 26.0, 70.0, 26.0])
+    together = many_speeds.strengths_together(convection, vertical, forcing, gravity)
+    for place, one in enumerate(gravity):
+        alone = np.linalg.solve(convection + one * vertical, forcing)
+        assert np.max(np.abs(together[:, place] - alone)) < 1e-4 * np.max(np.abs(alone))
+        assert np.max(np.abs(convection @ alone + one * vertical @ alone - forcing)) < 1e-9
+
+
+def test_single_precision_is_a_hundredth_of_what_is_asked_of_it() -> None:
+    """Trial solutions tell apart changes of a thousandth of the wave coefficient."""
+    coarse = rankine.RankineSettings().refined(0.7)
+    hull = affine(7.2, 3.5)
+    double, single = (
+        rankine.solve(hull, (0.19, 0.22, 0.27), replace(coarse, single_precision=precision)).conditions
+        for precision in (False, True)
+    )
+    for one, other in zip(double, single, strict=True):
+        assert one.wave_coefficient != other.wave_coefficient
+        assert other.wave_coefficient == pytest.approx(one.wave_coefficient, rel=1e-5)
+        assert other.wave_coefficient_pressure == pytest.approx(one.wave_coefficient_pressure, rel=1e-5)
 
 
 def test_a_finer_mesh_ranks_designs_alike() -> None:

@@ -26,6 +26,7 @@ from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.hull.panels import HullPanels, hull_panels
 from hpsop_core.hydro.rankine.checks import check_answer, check_base_flow, check_froude_numbers, check_panels
 from hpsop_core.hydro.rankine.grid import SurfaceGrid, surface_grid
+from hpsop_core.hydro.rankine.many_speeds import strengths_together
 from hpsop_core.hydro.rankine.operator import combine, convect, difference_weights
 from hpsop_core.hydro.rankine.resistance import plane_resistance, pressure_force, sinkage_and_trim, wave_planes
 from hpsop_core.hydro.rankine.settings import RankineSettings
@@ -208,8 +209,9 @@ class SurfaceSystem:
 
 
 @one_blas_thread()
-def surface_system(body: DoubleBody, grid: SurfaceGrid) -> SurfaceSystem:
-    """Assemble the free-surface equations and eliminate the hull's unknowns."""
+def surface_system(body: DoubleBody, grid: SurfaceGrid, single_precision: bool = False) -> SurfaceSystem:
+    """Assemble the free-surface equations and eliminate the hull's unknowns, these in single precision if asked."""
+    kind = np.float32 if single_precision else np.float64
     # On z = 0 the z-image doubles the horizontal velocities and cancels the vertical one.
     hull_u, hull_v, _ = panel_velocities(grid.points, body.panels, image_z=False)
     hull_u *= 2.0
@@ -219,8 +221,10 @@ def surface_system(body: DoubleBody, grid: SurfaceGrid) -> SurfaceSystem:
     flow_square = u * u + v * v
     along, vertical = surface_influence(grid.points, grid.sources, grid.area, u, v)
     on_hull = point_velocities(body.lifted, grid.sources, grid.area)
-    elimination = lu_solve(body.factor, normal_component(body.panels, on_hull), check_finite=False)
-    along -= (u[:, None] * hull_u + v[:, None] * hull_v) @ elimination
+    factor, pivots = body.factor
+    coupling = normal_component(body.panels, on_hull).astype(kind, copy=False)
+    elimination = lu_solve((factor.astype(kind, copy=False), pivots), coupling, check_finite=False)
+    along -= (u[:, None] * hull_u + v[:, None] * hull_v).astype(kind, copy=False) @ elimination
 
     columns, rows = grid.shape
     weights = difference_weights(grid.points[:, 0].reshape(columns, rows))
@@ -320,10 +324,13 @@ def _solve(body: HullPanels, numbers: tuple[float, ...], settings: RankineSettin
     check_base_flow(base.strengths, base.flow, drag)
 
     grid = surface_grid(waterline, settings)
-    system = surface_system(base, grid)
+    system = surface_system(base, grid, settings.single_precision)
     grid_step = float(np.ptp(waterline[:, 0])) / settings.columns_along_hull
     gravity = 1.0 / np.array(numbers) ** 2
-    on_surface = np.stack([surface_strengths(system, float(g)) for g in gravity], axis=1)
+    if settings.single_precision:
+        on_surface = strengths_together(system.convection, system.vertical, system.forcing, gravity)
+    else:
+        on_surface = np.stack([surface_strengths(system, float(g)) for g in gravity], axis=1)
     on_hull = base.strengths[:, None] - system.elimination @ on_surface
     tail_end = max(0.0, float(waterline[-1, 0]) - 1.0) if body.tail_panels else 0.0
     by_plane = plane_resistance(wave_planes(grid, settings, tail_end), panels, on_hull, grid, on_surface, gravity)
