@@ -109,6 +109,7 @@ CASE_FIELDS: tuple[tuple[str, tuple[tuple[str, str, str], ...]], ...] = (
             ("constants", "atmospheric_pressure", "P₀ [Pa]"),
             ("constants", "vapour_pressure", "Pᵥ [Pa]"),
             ("constants", "propeller_roughness", "Roughness [m]"),
+            ("constants", "camber_scaling", "Blade camber"),
         ),
     ),
     (

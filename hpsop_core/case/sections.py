@@ -280,6 +280,12 @@ class ConstantsSection:
     sea_margin: float = number(0.0, 0.0, 1.0, "on the brake power, for wind, waves and fouling: 0.15 is 15 %")
     shaft_efficiency: float = number(1.0, 0.8, 1.0, "delivered power over brake power, in calm water")
     propeller_roughness: float = number(30e-6, 1e-6, 1e-3, "roughness of the blades (ITTC-78)", "m")
+    camber_scaling: str = choice(
+        "model",
+        ("model", "reynolds"),
+        "camber that the blades' boundary layer takes at full scale: as much as on the model that it was fitted on, or "
+        "less, in proportion to the friction",
+    )
     wave_calibration: str = choice(
         "level2",
         ("level2", "learnt", "stated", "none"),

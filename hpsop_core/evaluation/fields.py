@@ -18,6 +18,7 @@ from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.levels import FAST, LEVEL_NUMBERS, TRUTH, level_of
 from hpsop_core.evaluation.physics import basis_for
+from hpsop_core.evaluation.propeller_answer import blade_drag
 from hpsop_core.evaluation.reference import Reference
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.shapes import design_hull, design_propeller
@@ -27,7 +28,6 @@ from hpsop_core.geometry.hull.panels import block_points
 from hpsop_core.hydro import kelvin
 from hpsop_core.hydro.cavitation import section_dynamic_pressure
 from hpsop_core.hydro.kelvin import WaveGrid, WaveSpectrum
-from hpsop_core.hydro.section_drag import SectionDrag
 from hpsop_core.typing_aliases import Array, IntArray
 
 # A little finer than the optimiser's grid: here the pressures are looked at, not the circulation.
@@ -296,7 +296,7 @@ def blade_pressure(
     result = solve(
         propeller,
         (advance,),
-        SectionDrag.full_scale(case.constants.propeller_roughness),
+        blade_drag(case.constants),
         BladePanelSettings(chordwise_panels=_CHORDWISE_PANELS, radial_panels=_RADIAL_PANELS),
     )
     found = result.surface_pressure(advance)

@@ -15,7 +15,7 @@ from hpsop_core.case.case import DEFAULT_CASE, Case, load_case
 from hpsop_core.compiled import is_missing
 from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation.levels import TRUTH
-from hpsop_core.evaluation.propeller_answer import propeller_answer, propeller_variables
+from hpsop_core.evaluation.propeller_answer import blade_drag, propeller_answer, propeller_variables
 from hpsop_core.evaluation.shapes import design_hull
 
 _LONGEST = 120.0  # seconds that the second process is waited for; without it this one compiles alone
@@ -46,7 +46,7 @@ def compile_kernels(case: Case, tell: Callable[[str], None]) -> None:
         key = propeller_variables(case.propeller, case.initial.variables)
         try:
             with contextlib.suppress(SolverFailure):
-                propeller_answer(key, TRUTH.number, case.constants.propeller_roughness)
+                propeller_answer(key, TRUTH.number, blade_drag(case.constants))
             second.wait(_LONGEST)
         finally:
             second.kill()

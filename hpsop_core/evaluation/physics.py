@@ -36,6 +36,7 @@ from hpsop_core.evaluation.hull_propulsion import (
 from hpsop_core.evaluation.levels import TRUTH, Level, WaveAnswer, level_of
 from hpsop_core.evaluation.propeller_answer import (
     PropellerAnswer,
+    blade_drag,
     build_propeller,
     finer_propeller_answer,
     propeller_answer,
@@ -178,10 +179,10 @@ def compute(
         waves, answer = told
         if case.constraints.back_cavitation_limit is not None:
             # Pressures on the blades are never predicted.
-            answer = propeller_answer(propeller_key, level, case.constants.propeller_roughness)
+            answer = propeller_answer(propeller_key, level, blade_drag(case.constants))
         with contextlib.suppress(SolverFailure):
             return _assembled(case, variables, level, basis, froude_numbers, hull, waves, answer, predicted=True)
-    answer = propeller_answer(propeller_key, level, case.constants.propeller_roughness)
+    answer = propeller_answer(propeller_key, level, blade_drag(case.constants))
     waves = wave_answers(hull_key, level, froude_numbers)
     return _assembled(case, variables, level, basis, froude_numbers, hull, waves, answer)
 
@@ -213,11 +214,11 @@ def compute_trial(case: Case, variables: DesignVariables, basis: Basis, trial: T
     hull = build_hull(hull_key)
     froude_numbers = own_froude_numbers(case, hull, basis.speeds)
     propeller_key = propeller_variables(case.propeller, variables)
-    roughness = case.constants.propeller_roughness
+    drag = blade_drag(case.constants)
     if trial.finer_blades:
-        answer = finer_propeller_answer(propeller_key, roughness)
+        answer = finer_propeller_answer(propeller_key, drag)
     else:
-        answer = propeller_answer(propeller_key, TRUTH.number, roughness)
+        answer = propeller_answer(propeller_key, TRUTH.number, drag)
     waves = _trial_waves(hull_key, froude_numbers, trial)
     return _assembled(case, variables, TRUTH.number, basis, froude_numbers, hull, waves, answer, trial=trial)
 

@@ -10,7 +10,7 @@ from typing import TYPE_CHECKING
 
 import numpy as np
 
-from hpsop_core.case.sections import PropellerSection
+from hpsop_core.case.sections import ConstantsSection, PropellerSection
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation.levels import TRUTH, level_of
@@ -87,8 +87,13 @@ class PropellerAnswer:
     pressures: BladePressureTable | None
 
 
+def blade_drag(constants: ConstantsSection) -> SectionDrag:
+    """What a case's boundary layer does to its blades at full scale."""
+    return SectionDrag.full_scale(constants.propeller_roughness, camber_scaling=constants.camber_scaling)
+
+
 @lru_cache(maxsize=4096)
-def propeller_answer(variables: PropellerVariables, level: int, roughness: float) -> PropellerAnswer:
+def propeller_answer(variables: PropellerVariables, level: int, drag: SectionDrag) -> PropellerAnswer:
     """Open-water curves at full scale between the ends of ``ADVANCE_RANGE``, and at level 2 the blades' pressures.
 
     The section drag is ITTC-78's rough line, which does not depend on the rate of revolutions, so one curve serves
@@ -97,21 +102,20 @@ def propeller_answer(variables: PropellerVariables, level: int, roughness: float
     Args:
         variables: the propeller.
         level: 1 lifting line, 2 panel method.
-        roughness: of the blades, in m.
+        drag: ``blade_drag`` of the case.
 
     Raises:
         SolverFailure: the solver does not converge; names the J.
     """
     nodes = chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
-    propeller, drag = build_propeller(variables), SectionDrag.full_scale(roughness)
-    solution = level_of(level).solve_propeller(propeller, nodes, drag)
+    solution = level_of(level).solve_propeller(build_propeller(variables), nodes, drag)
     result = solution.open_water
     pressures = solution.pressures() if solution.pressures else None
     return PropellerAnswer(PropellerCurve(nodes, result.thrust_coefficient, result.torque_coefficient), pressures)
 
 
 @lru_cache(maxsize=512)
-def finer_propeller_answer(variables: PropellerVariables, roughness: float) -> PropellerAnswer:
+def finer_propeller_answer(variables: PropellerVariables, drag: SectionDrag) -> PropellerAnswer:
     """As ``propeller_answer`` at the true level, on its finer panels; without pressures.
 
     Raises:
@@ -120,7 +124,6 @@ def finer_propeller_answer(variables: PropellerVariables, roughness: float) -> P
     if TRUTH.solve_finer_propeller is None:
         raise SolverFailure("propeller", "the true level has no finer panels")
     nodes = chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
-    drag = SectionDrag.full_scale(roughness)
     result = TRUTH.solve_finer_propeller(build_propeller(variables), nodes, drag).open_water
     return PropellerAnswer(PropellerCurve(nodes, result.thrust_coefficient, result.torque_coefficient), None)
 

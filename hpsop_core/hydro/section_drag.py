@@ -16,6 +16,15 @@ OFF_DESIGN_FACTOR = 6.7
 _FLATTEST_REYNOLDS_NUMBER = (20.0 / 0.044) ** 2
 """Below it the ITTC line falls again, which no blade does; there the line is held at its greatest value."""
 
+CAMBER_SCALINGS = ("model", "reynolds")
+
+CAMBER_KEPT = 0.935
+"""Share of its camber that a blade with a boundary layer keeps at model scale: the one viscous lift factor of the panel
+method, fitted on the open-water test of P4119 alone (docs/theory-propeller-panels.md)."""
+
+FITTED_REYNOLDS_NUMBER = 9.9098e5
+"""Of the section at 0.7 R in that test: D 0.3048 m, 10 1/s, J 0.7."""
+
 
 @dataclass(frozen=True)
 class SectionDrag:
@@ -33,6 +42,8 @@ class SectionDrag:
         viscosity: kinematic, m2/s (model scale).
         roughness: kp in m (full scale).
         off_design_factor: k.
+        camber_scaling: what of its camber a full-scale blade loses: as much as the "model" did, or in proportion to the
+            friction ("reynolds"), see ``camber_gain``.
     """
 
     scale: str
@@ -40,6 +51,7 @@ class SectionDrag:
     viscosity: float | None = None
     roughness: float | None = None
     off_design_factor: float = OFF_DESIGN_FACTOR
+    camber_scaling: str = "model"
 
     @staticmethod
     def inviscid() -> SectionDrag:
@@ -56,10 +68,14 @@ class SectionDrag:
         return SectionDrag("model", float(rotation_rate), float(viscosity), None, float(off_design_factor))
 
     @staticmethod
-    def full_scale(roughness: float = 30.0e-6, off_design_factor: float = OFF_DESIGN_FACTOR) -> SectionDrag:
+    def full_scale(
+        roughness: float = 30.0e-6, off_design_factor: float = OFF_DESIGN_FACTOR, camber_scaling: str = "model"
+    ) -> SectionDrag:
         """A rough full-scale blade of ``roughness`` kp in m (30e-6 is ITTC-78's standard)."""
         _check_positive("roughness", roughness)
-        return SectionDrag("full", None, None, float(roughness), float(off_design_factor))
+        if camber_scaling not in CAMBER_SCALINGS:
+            raise InputError(f"section drag: camber_scaling '{camber_scaling}' must be model or reynolds")
+        return SectionDrag("full", None, None, float(roughness), float(off_design_factor), camber_scaling)
 
     @property
     def viscous(self) -> bool:
@@ -88,6 +104,25 @@ class SectionDrag:
             relative = np.maximum(chord_ratio * diameter / self.roughness, 100.0)
             return np.asarray(form * (1.89 + 1.62 * np.log10(relative)) ** -2.5)
         return np.zeros_like(form)
+
+    def camber_gain(self, diameter: float, chord_ratio: float) -> float:
+        """Camber that a blade keeps over what it keeps on the model of the fit; 1 unless scaled by "reynolds".
+
+        The boundary layers of back and face take camber from a section in proportion to their displacement thickness at
+        the trailing edge, and that goes with the friction (Spence 1954, Journal of the Aeronautical Sciences 21). So
+        the loss, 1 - ``CAMBER_KEPT``, is scaled by the friction of ITTC-78's rough line over that of its model line
+        where it was fitted, both for the section at 0.7 R without thickness.
+
+        Args:
+            diameter: D in m.
+            chord_ratio: c/D at 0.7 R.
+        """
+        if self.camber_scaling == "model":
+            return 1.0
+        one, none = np.array(1.0), np.array(0.0)
+        tested = SectionDrag.model_scale(FITTED_REYNOLDS_NUMBER, 1.0).ideal_coefficient(1.0, one, none, one)
+        own = self.ideal_coefficient(diameter, np.array(chord_ratio), none, one)
+        return (1.0 - (1.0 - CAMBER_KEPT) * float(own / tested)) / CAMBER_KEPT
 
     def coefficient(self, ideal_coefficient: Array, lift_excess: Array) -> Array:
         """Cd = Cd0 (1 + k (CL - CLi)^2), with Cd0 from ``ideal_coefficient``; both arguments broadcast.

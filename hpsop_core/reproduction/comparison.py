@@ -9,7 +9,12 @@ from hpsop_core.case.case import Case, load_case
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.levels import FAST, LEVEL_NUMBERS
-from hpsop_core.evaluation.propeller_answer import build_propeller, propeller_answer, propeller_variables
+from hpsop_core.evaluation.propeller_answer import (
+    blade_drag,
+    build_propeller,
+    propeller_answer,
+    propeller_variables,
+)
 from hpsop_core.evaluation.reference import Reference
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.shapes import initial_volume
@@ -276,7 +281,7 @@ def propellers(data: Reproduction) -> Table:
             )
         )
         for level in LEVEL_NUMBERS:
-            kt, kq = propeller_answer(key, level, data.case.constants.propeller_roughness).curve.coefficients(j)
+            kt, kq = propeller_answer(key, level, blade_drag(data.case.constants)).curve.coefficients(j)
             ours = (float(kt), 10.0 * float(kq), j * float(kt) / (2.0 * math.pi * float(kq)))
             theirs = (point.thrust_coefficient, point.ten_torque_coefficient, point.open_water_efficiency)
             off = tuple(100.0 * (mine / given - 1.0) for mine, given in zip(ours, theirs, strict=True))
@@ -306,7 +311,7 @@ def thrust_with_absolute_pitch(data: Reproduction, point: PaperPoint) -> float:
     absolute = build_propeller(propeller_variables(data.case.propeller, parent)).pitch_diameter_ratio_07R
     changed = parent.replaced({"pitch_ratio": point.design.pitch_ratio * parent.pitch_ratio / absolute})
     key = propeller_variables(data.case.propeller, changed)
-    answer = propeller_answer(key, 1, data.case.constants.propeller_roughness)
+    answer = propeller_answer(key, 1, blade_drag(data.case.constants))
     return float(answer.curve.coefficients(point.advance_coefficient)[0])
 
 

@@ -18,11 +18,11 @@ from hpsop_core.hydro.blade_panels.solver import forces_of, solve
 from hpsop_core.hydro.lifting_line import solver as lifting_line
 from hpsop_core.hydro.lifting_line.solver import LiftingLineSettings
 from hpsop_core.hydro.open_water import OpenWater
-from hpsop_core.hydro.section_drag import OFF_DESIGN_FACTOR, SectionDrag
+from hpsop_core.hydro.section_drag import CAMBER_KEPT, OFF_DESIGN_FACTOR, SectionDrag
 from hpsop_core.typing_aliases import Array
 from hpsop_core.validation.propeller_level1 import MODEL_DIAMETER, reference_rows
 from hpsop_core.validation.propeller_level2 import fine_rigid_wake
-from hpsop_core.validation.published_propellers import B_SERIES, b_series_drag, published_propeller
+from hpsop_core.validation.published_propellers import B_SERIES, b_series_drag, open_water_at, published_propeller
 
 MODEL_SCALE = SectionDrag.model_scale(10.0, 1.0e-6)
 GRIDS = ((20, 10), (24, 10), (32, 12), (40, 16), (60, 20), (80, 24))
@@ -194,25 +194,28 @@ def drag_factor_on_the_b_series() -> Rows:
 
 
 def camber_at_full_scale() -> Rows:
-    """Change of KT, KQ and efficiency in % where a full-scale blade keeps more of its camber, level 2, D 9 m, J 0.7."""
+    """Change of KT, KQ and efficiency in % where a full-scale blade keeps more of its camber, D 9 m, J 0.7."""
     for blades in (3, 5, 7):
         propeller = propeller_family(load_propeller(), 9.0, blades)
-        base = solve(propeller, [0.7], SectionDrag.full_scale()).open_water
-        for kept in (0.965, 1.0):
-            settings = BladePanelSettings(camber_effectiveness=kept)
-            changed = solve(propeller, [0.7], SectionDrag.full_scale(), settings).open_water
+        chord_07 = float(propeller.table.at(np.array(0.7)).chord_ratio)
+        scaled = SectionDrag.full_scale(camber_scaling="reynolds")
+        gain = scaled.camber_gain(propeller.diameter, chord_07)
+        for level in (1, 2):
+            base = open_water_at(level, propeller, np.array([0.7]), SectionDrag.full_scale())
+            changed = open_water_at(level, propeller, np.array([0.7]), scaled)
             pairs = (
                 (changed.thrust_coefficient, base.thrust_coefficient),
                 (changed.torque_coefficient, base.torque_coefficient),
                 (changed.open_water_efficiency, base.open_water_efficiency),
             )
-            yield (str(blades), f"{kept:g}", *(f"{100.0 * (float(a[0]) / float(b[0]) - 1.0):+.1f}" for a, b in pairs))
+            cells = (f"{100.0 * (float(a[0]) / float(b[0]) - 1.0):+.2f}" for a, b in pairs)
+            yield (str(blades), f"{level}", f"{gain * CAMBER_KEPT:.3f}", *cells)
 
 
 _EXPERIMENT_HEAD = ("J", "KT test", "KT", "error", "10KQ test", "10KQ", "error", "set B: KT / 10KQ")
 _LEVELS_HEAD = ("Z", "m", "EAR", "KT at J 0.5, 0.7, 0.85 in %", "KQ in %")
 DRAG_FACTOR_HEAD = ("propeller", "k", "J 0.3", "0.4", "0.5", "0.6", "0.7", "0.8")
-CAMBER_HEAD = ("Z", "camber kept", "KT in %", "KQ in %", "efficiency in %")
+CAMBER_HEAD = ("Z", "level", "camber kept", "KT in %", "KQ in %", "efficiency in %")
 TABLES = (
     ("Level 1, P4119, model scale", _EXPERIMENT_HEAD, level_1_against_experiment),
     ("Level 1, strips", ("strips", "KT at J 0.5"), strips_of_level_1),

@@ -50,6 +50,7 @@ CHANGES: dict[str, tuple[Any, str]] = {
     "constants.thrust_deduction_factor": (0.75, "thrust_deduction"),
     "constants.relative_rotative_efficiency": (1.05, "delivered_power"),
     "constants.propeller_roughness": (3e-4, "torque"),
+    "constants.camber_scaling": ("reynolds", "rotation_rate_rpm"),
     "constants.sea_margin": (0.2, "brake_power"),
     "constants.shaft_efficiency": (0.9, "brake_power"),
     "constants.wave_calibration": ("none", "wave_resistance"),

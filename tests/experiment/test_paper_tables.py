@@ -67,13 +67,13 @@ def test_objectives_of_table4_and_table3() -> None:
 
 def test_our_propeller_at_the_papers_advance_coefficients() -> None:
     """The initial propeller: P/D of the paper is a multiplier on P4119's pitch."""
-    from hpsop_core.evaluation.propeller_answer import propeller_answer, propeller_variables
+    from hpsop_core.evaluation.propeller_answer import blade_drag, propeller_answer, propeller_variables
 
     case = load_case("dtc-p4119-paper")
     key = propeller_variables(case.propeller, case.initial.variables)
     for point in paper.points_of("IS"):
         for level in (1, 2):
-            curve = propeller_answer(key, level, case.constants.propeller_roughness).curve
+            curve = propeller_answer(key, level, blade_drag(case.constants)).curve
             kt, kq = (float(value) for value in curve.coefficients(point.advance_coefficient))
             # The paper's solvers are others of the same kinds: 5 % in the coefficients, 2 % in their ratio.
             assert kt == pytest.approx(point.thrust_coefficient, rel=0.05)

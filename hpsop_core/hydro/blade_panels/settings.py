@@ -8,6 +8,7 @@ from typing import Literal
 import numpy as np
 
 from hpsop_core.errors import InputError
+from hpsop_core.hydro.section_drag import CAMBER_KEPT
 from hpsop_core.typing_aliases import Array
 
 SOLVER = "blade panels 1.2"
@@ -20,9 +21,6 @@ three of them evenly spaced in the pitch would put KT 0.7 % off at J = 0.3 and 0
 HUB_WAKE_PITCH = 0.9
 """Pitch over the blade's pitch at 0.7 R of the helix along which the hub is panelled behind the blades; KT moves by
 3e-4 from 0.75 to 1.05."""
-
-CAMBER_EFFECTIVENESS = 0.935
-"""The one viscous lift factor, fitted on the open-water test of P4119 alone (docs/theory-propeller-panels.md)."""
 
 CROSS_FLOW_DISTANCE = (0.03, 0.08)
 """Distance from hub or tip, in local chords, between which the pressures of the Kutta condition come to include the
@@ -87,7 +85,7 @@ class BladePanelSettings:
     wake: Literal["aligned", "geometric_pitch"] = "aligned"
     forces: Literal["circulation", "pressure"] = "circulation"
     hub_in_forces: bool = False
-    camber_effectiveness: float = CAMBER_EFFECTIVENESS
+    camber_effectiveness: float = CAMBER_KEPT
     hub: HubSettings = field(default_factory=HubSettings)
     wake_grid: WakeSettings = field(default_factory=WakeSettings)
     wake_pitch_count: int = WAKE_PITCH_COUNT

@@ -15,7 +15,7 @@ further J in well under a millisecond, exactly and not by interpolation in J, so
 from __future__ import annotations
 
 from collections.abc import Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 import numpy as np
 
@@ -349,4 +349,6 @@ def solve(
         InputError: a J is negative or not finite.
         SolverFailure: no solution; the reason names J.
     """
-    return prepare(propeller, settings).solve(advance_coefficients, drag)
+    chord_07 = float(propeller.table.at(np.array(0.7)).chord_ratio)
+    camber = settings.camber_effectiveness * drag.camber_gain(propeller.diameter, chord_07)
+    return prepare(propeller, replace(settings, camber_effectiveness=camber)).solve(advance_coefficients, drag)
