@@ -211,11 +211,11 @@ def page(folder: Path) -> str:
         "cannot mend the light end of seven blades, where thrust itself is too high.", "",
         *_table(DRAG_FACTOR_HEAD, drag_factor_on_the_b_series()),
         "", "## Camber and Reynolds number", "",
-        "The share of camber that a blade keeps, 0.935 at level 2, was fitted at model scale, and stands at full scale",
-        'too unless the case says `constants.camber_scaling = "reynolds"`: then the loss goes with the friction at 0.7 R,',
-        "ITTC-78's rough line over its model line where the share was fitted (docs/theory-lifting-line.md). No test here",
-        "can tell: by the same rule the models of the B-series (Re 2e6) and of DTMB would lose 6.0 to 6.7 % where P4119's",
-        "loses 6.5. What it changes, P4119's family, D 9 m, J 0.7:", "",
+        "The share of camber that a blade keeps, 0.935 at level 2, was fitted at model scale and stands at full scale",
+        'too, unless the case says `constants.camber_scaling = "reynolds"`: then the loss goes with the friction at',
+        "0.7 R, ITTC-78's rough line over its model line where the share was fitted (theory-lifting-line.md). No test",
+        "here can tell: by the same rule models of the B-series (Re 2e6) and of DTMB would lose 6.0 and 6.7 % where",
+        "P4119's loses 6.5. What it changes, P4119's family, D 9 m, J 0.7:", "",
         *_table(CAMBER_HEAD, camber_at_full_scale()),
     ]  # fmt: skip
     return "\n".join(lines) + "\n"

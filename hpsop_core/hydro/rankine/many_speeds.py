@@ -124,8 +124,8 @@ def _extend(basis: Single, projected: Array, count: int, vector: Single) -> None
     """The next vector of the space, made orthogonal to the ``count`` + 1 that stand; twice: once is not enough."""
     standing = basis[: count + 1]
     for _ in range(2):
-        share = standing @ vector
-        vector = vector - share @ standing
+        share: Single = standing @ vector
+        vector = np.asarray(vector - share @ standing, dtype=np.float32)
         projected[: count + 1, count] += share
     length = float(np.linalg.norm(vector))
     projected[count + 1, count] = length
