@@ -46,6 +46,12 @@ def test_a_front_that_has_its_errors_is_shown_without_a_solver() -> None:
     assert not loaded & {*NOT_FOR_ONE_ANSWER, "scipy.interpolate"} - {"hpsop_core.runs"}
 
 
+def test_the_page_has_its_address_before_what_only_a_chart_asks_for() -> None:
+    command = "import sys; import explorer.app; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True)
+    assert not set(done.stdout.split()) & {"dask", "geomdl", "matplotlib", "numba", "pymoo", "scipy.stats"}
+
+
 def _commands(parser: argparse.ArgumentParser) -> set[str]:
     actions = [action for action in parser._actions if isinstance(action, argparse._SubParsersAction)]
     return {name for action in actions for name in action.choices}
