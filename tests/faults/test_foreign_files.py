@@ -63,6 +63,20 @@ def test_whatever_becomes_of_the_reader_is_said(
         apart.read_apart(path)
 
 
+def test_a_reader_that_hangs_over_a_small_file_is_ended_soon(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    hangs = (
+        "import itertools, sys; from pathlib import Path; from hpsop_core.geometry.foreign import child;"
+        "child._reader = lambda suffix: lambda path: [0 for _ in itertools.count() if False];"
+        "child.main(Path(sys.argv[1]), float(sys.argv[2]))"
+    )
+    environment = apart.own_python("any")[1]
+    monkeypatch.setattr(apart, "own_python", lambda _module: ([sys.executable, "-c", hangs], environment))
+    path = tmp_path / "my.3dm"
+    path.write_bytes(b"3D Geometry File Format")
+    with pytest.raises(InputError, match=r"did not end within 1\.2 s of work"):
+        apart.read_apart(path)
+
+
 @pytest.mark.soak
 @pytest.mark.parametrize("suffix", ["3dm", "step", "iges"])
 def test_fuzz_surfaces_at_length(suffix: str, tmp_path: Path) -> None:

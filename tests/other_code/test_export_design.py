@@ -16,6 +16,7 @@ from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.export.design_files import export_design
 from hpsop_core.export.slivers import least_angles
 from hpsop_core.geometry.clearance import propeller_placement
+from hpsop_core.geometry.foreign.rhino import points_at
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.geometry.hull.input import parent_hull_from_offsets
 from hpsop_core.geometry.propeller.input import radial_table_from_csv
@@ -183,3 +184,18 @@ def test_numbers_are_those_of_the_run(files: Path, run: RunReader, design: int) 
     assert float(np.trapezoid(areas[:, 1], areas[:, 0])) == pytest.approx(evaluation.hull.displaced_volume, rel=2e-3)
     text = (files / "README.txt").read_text()
     assert all(file.name in text for file in files.iterdir() if file.name != "README.txt")
+
+
+def test_points_of_a_rhino_surface_are_those_that_rhino_gives() -> None:
+    floating = rhino3dm.NurbsSurface.Create(3, False, 4, 3, 6, 5)
+    for knots in (floating.KnotsU, floating.KnotsV):
+        for k in range(len(knots)):
+            knots[k] = 0.5 * k  # not clamped: openNURBS' own closed surfaces are not
+    for i in range(6):
+        for j in range(5):
+            floating.Points[(i, j)] = rhino3dm.Point4d(i, j, i * j % 3, 1.0 + 0.2 * ((i + j) % 2))
+    sphere = rhino3dm.Sphere(rhino3dm.Point3d(50.0, 0.0, 0.0), 20.0).ToNurbsSurface()
+    for surface in (floating, sphere):
+        u, v = (np.linspace(d.T0, d.T1, count) for d, count in ((surface.Domain(0), 9), (surface.Domain(1), 7)))
+        given = [surface.PointAt(float(a), float(b)) for a in u for b in v]
+        np.testing.assert_allclose(points_at(surface, u, v), [[p.X, p.Y, p.Z] for p in given], rtol=0.0, atol=1e-12)

@@ -8,6 +8,7 @@ from pathlib import Path
 from typing import Any
 
 import numpy as np
+from scipy.interpolate import BSpline
 
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.foreign.loose import LooseTriangles
@@ -43,11 +44,12 @@ def read_3dm(path: Path) -> LooseTriangles:
     left_out = set()
     for item in file.Objects:
         words = f"{item.Attributes.Name or ''} {layers.get(item.Attributes.LayerIndex, '')}"
-        found, trimmed = _triangles(item.Geometry)
         named = _APPENDAGES.search(words)
         if named is not None:
-            left_out |= {named.group(0).lower()} if found else set()
+            shapes = (rhino3dm.Brep, rhino3dm.Mesh, rhino3dm.Surface)
+            left_out |= {named.group(0).lower()} if isinstance(item.Geometry, shapes) else set()
             continue
+        found, trimmed = _triangles(item.Geometry)
         pieces += found
         whole_trimmed += trimmed
     if not pieces:
@@ -117,8 +119,25 @@ def _of_surface(surface: Any) -> tuple[Array, IntArray]:
         if len(every) < 40:
             every = np.unique(np.concatenate([every, np.linspace(values[0], values[-1], 40)]))
         axes.append(every if len(every) <= MOST_POINTS else np.linspace(values[0], values[-1], MOST_POINTS))
-    points = [surface.PointAt(float(u), float(v)) for u in axes[0] for v in axes[1]]
-    return np.array([[p.X, p.Y, p.Z] for p in points]), grid_faces(len(axes[0]), len(axes[1]))
+    return points_at(surface, *axes), grid_faces(len(axes[0]), len(axes[1]))
+
+
+def points_at(surface: Any, u: Array, v: Array) -> Array:
+    """Points (len(u) len(v), 3) of a NURBS surface of rhino3dm on a grid of parameters within its domain.
+
+    As ``surface.PointAt``, which takes a call a point: four fifths of the time of a whole file.
+    """
+    count = surface.Points.CountU, surface.Points.CountV
+    net = [[surface.Points[(i, j)] for j in range(count[1])] for i in range(count[0])]
+    # Homogeneous: x, y and z are weighted.
+    weighted = np.array([[(p.X, p.Y, p.Z, p.W) for p in row] for row in net])
+    bases = []
+    for at, knots, order in ((u, surface.KnotsU, surface.OrderU), (v, surface.KnotsV, surface.OrderV)):
+        # openNURBS leaves out the first and the last knot, on which nothing within the domain depends.
+        inner = [knots[k] for k in range(len(knots))]
+        bases.append(BSpline.design_matrix(at, np.array([inner[0], *inner, inner[-1]]), order - 1).toarray())
+    found = np.einsum("ui,ijk,vj->uvk", bases[0], weighted, bases[1], optimize=True)
+    return np.asarray((found[..., :3] / found[..., 3:]).reshape(-1, 3))
 
 
 def grid_faces(rows: int, columns: int) -> IntArray:
