@@ -196,7 +196,15 @@ def beyond_fronts(picture: RunPicture, generation: int | None = None) -> Beyond:
             continue
         if item.level == FAST.number:
             margin = _margin_words(picture, rows)
-        gain = front[None, :, :] - picture.objectives[found][:, None, :]
+        # Whom anything on the front could beat: the greatest f2 among the front's designs with no less f1 is no less.
+        order = np.argsort(front[:, 0], kind="stable")
+        highest = np.append(np.maximum.accumulate(front[order[::-1], 1])[::-1], -np.inf)
+        points = picture.objectives[found]
+        maybe = points[:, 1] <= highest[np.searchsorted(front[order, 0], points[:, 0])]
+        found, points = found[maybe], points[maybe]
+        if not len(found):
+            continue
+        gain = front[None, :, :] - points[:, None, :]
         least, greatest = gain.min(axis=2), gain.max(axis=2)
         better = ((least >= 0.0) & (greatest > 0.0)).any(axis=1)
         if better.any():

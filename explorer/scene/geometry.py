@@ -14,7 +14,7 @@ from hpsop_core.case.variables import DesignVariables
 from hpsop_core.evaluation.curves import HullLines
 from hpsop_core.evaluation.shapes import design_hull, design_propeller
 from hpsop_core.geometry.clearance import propeller_placement
-from hpsop_core.geometry.hull.mesh import hull_view_parts
+from hpsop_core.geometry.hull.mesh import Resolution, hull_view_parts
 from hpsop_core.geometry.propeller.mesh import propeller_view_parts
 
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
@@ -51,16 +51,23 @@ class SceneGeometry:
     boxes: Boxes
 
 
-def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
+def scene_geometry(case: Case, variables: DesignVariables, near: bool = True) -> SceneGeometry:
     """All meshes of a design.
+
+    Args:
+        case: the ship.
+        variables: the design.
+        near: whether it is looked at closely. A third of the triangles looks the same where the whole ship is seen, and
+            a screen without graphics hardware takes 5 microseconds for each of them at every frame.
 
     Raises:
         SolverFailure: the hull or the propeller cannot be made.
     """
     hull = design_hull(case, variables)
     propeller = design_propeller(case, variables)
-    parts = hull_view_parts(hull, "view")
-    blades, hub = (propeller_view_parts(propeller, "view")[name] for name in ("blades", "hub"))
+    resolution: Resolution = "view" if near else "drag"
+    parts = hull_view_parts(hull, resolution)
+    blades, hub = (propeller_view_parts(propeller, resolution)[name] for name in ("blades", "hub"))
     placement = propeller_placement(hull, propeller)
     turn, position = placement[:3, :3].T, placement[:3, 3]
     empty = (np.zeros((3, 3)), np.array([[0, 1, 2]]))
@@ -69,7 +76,7 @@ def scene_geometry(case: Case, variables: DesignVariables) -> SceneGeometry:
     line = np.concatenate([port, port[::-1] * np.array([1.0, -1.0])])
     waterline = np.column_stack([line, np.full(len(line), hull.draft)])
     underwater, above = parts.get("underwater", empty), parts.get("topsides", empty)
-    walls, deck = walls_and_deck(hull, above)
+    walls, deck = walls_and_deck(hull, above, resolution)
     return SceneGeometry(
         underwater=underwater,
         topsides=walls,

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from hpsop_core.geometry.hull.hull import Hull, ParentHull
-from hpsop_core.geometry.hull.mesh import hull_view_parts
+from hpsop_core.geometry.hull.mesh import Resolution, hull_view_parts
 
 Array = NDArray[np.float64]
 Faces = NDArray[np.int64]
@@ -44,10 +44,10 @@ _SEGMENTS = {
 _DIGITS = ("abcdef", "bc", "abged", "abgcd", "fgbc", "afgcd", "afgedc", "abc", "abcdefg", "abcdfg")
 
 
-@lru_cache(maxsize=8)
-def _split(parent: ParentHull) -> tuple[tuple[Faces, Faces], tuple[Faces, Faces]]:
+@lru_cache(maxsize=16)
+def _split(parent: ParentHull, resolution: Resolution) -> tuple[tuple[Faces, Faces], tuple[Faces, Faces]]:
     """Of the topsides' mesh: the walls' and the deck's vertices and their faces; the deck looks upwards, high above."""
-    vertices, faces = hull_view_parts(_itself(parent), "view").get("topsides", _NOTHING)
+    vertices, faces = hull_view_parts(_itself(parent), resolution).get("topsides", _NOTHING)
     corners = vertices[faces]
     normal = np.cross(corners[:, 1] - corners[:, 0], corners[:, 2] - corners[:, 0])
     middle = 0.5 * (vertices[:, 2].min() + vertices[:, 2].max())
@@ -60,10 +60,10 @@ def _itself(parent: ParentHull) -> Hull:
     return parent.transform(parent.length, parent.breadth, parent.draft)
 
 
-def walls_and_deck(hull: Hull, topsides: Mesh) -> tuple[Mesh, Mesh]:
+def walls_and_deck(hull: Hull, topsides: Mesh, resolution: Resolution) -> tuple[Mesh, Mesh]:
     """The topsides' mesh in two, each of a topology that is fixed for a parent; a part that is missing is one point."""
     parts = []
-    for used, faces in _split(hull.parent):
+    for used, faces in _split(hull.parent, resolution):
         parts.append((topsides[0][used], faces) if len(used) else _NOTHING)
     return parts[0], parts[1]
 

@@ -9,11 +9,12 @@ import trimesh
 from numpy.typing import NDArray
 from PIL import Image
 
-_WATER = (34, 94, 132)
-_OPACITY = 0.52
+# the sea's colour on the light and on the dark page
+_WATER = {False: (52, 122, 164), True: (14, 44, 66)}
+_OPACITY = 0.46
 _TEXELS = 384
 # ripples: lengths over the sheet's half width, the wind's direction, and how much of the light they take
-_RIPPLES, _WIND, _CONTRAST = (0.028, 0.12), 0.7, 34.0
+_RIPPLES, _WIND, _CONTRAST = (0.028, 0.12), 0.7, {False: 34.0, True: 16.0}
 _SHADES = 16
 # The sky's colours from nadir over horizon to zenith, by the sine of the height; under the horizon lies more sea than
 # is drawn. viser's tone mapping turns grey what is brighter than these.
@@ -24,17 +25,18 @@ _SKY = {
 }
 
 
-def calm_water() -> trimesh.Trimesh:
+def calm_water(dark: bool) -> bytes:
     """A sheet from -1 to 1 at z = 0, rippled, whose opacity falls to nothing at its rim: a sea has no edge.
 
-    The ripples are paint: what waves the ship makes is another drawing.
+    A GLB file, lit by itself: a lit sheet costs a screen without graphics hardware as much as the ship. The ripples are
+    paint: what waves the ship makes is another drawing.
     """
     place = (np.arange(_TEXELS) + 0.5) / _TEXELS * 2.0 - 1.0
     radius = np.hypot(*np.meshgrid(place, place))
     fade = np.clip((1.0 - radius) / 0.6, 0.0, 1.0)
     texture = np.zeros((_TEXELS, _TEXELS, 4), dtype=np.uint8)
-    light = _CONTRAST * _ripples(place)
-    texture[..., :3] = np.clip(np.array(_WATER) + light[..., None] * np.array([0.8, 1.0, 1.0]), 0.0, 255.0)
+    light = _CONTRAST[dark] * _ripples(place)
+    texture[..., :3] = np.clip(np.array(_WATER[dark]) + light[..., None] * np.array([0.8, 1.0, 1.0]), 0.0, 255.0)
     texture[..., 3] = np.round(255.0 * _OPACITY * fade**2 * (3.0 - 2.0 * fade))
     corners = np.array([[-1.0, -1.0, 0.0], [1.0, -1.0, 0.0], [1.0, 1.0, 0.0], [-1.0, 1.0, 0.0]])
     material = trimesh.visual.material.PBRMaterial(
@@ -44,12 +46,13 @@ def calm_water() -> trimesh.Trimesh:
         metallicFactor=0.0,
         roughnessFactor=1.0,
     )
-    return trimesh.Trimesh(
+    sheet = trimesh.Trimesh(
         corners,
         np.array([[0, 1, 2], [0, 2, 3]]),
         visual=trimesh.visual.TextureVisuals(uv=0.5 * (corners[:, :2] + 1.0), material=material),
         process=False,
     )
+    return _file(sheet)
 
 
 def _ripples(place: NDArray[np.float64]) -> NDArray[np.float64]:
@@ -82,7 +85,7 @@ def sky(dark: bool) -> bytes:
         visual=trimesh.visual.TextureVisuals(uv=uv, material=material),
         process=False,
     )
-    return bytes(trimesh.exchange.gltf.export_glb(trimesh.Scene(shell), tree_postprocessor=_unlit))
+    return _file(shell)
 
 
 def backdrop(dark: bool, height: int) -> NDArray[np.uint8]:
@@ -91,6 +94,10 @@ def backdrop(dark: bool, height: int) -> NDArray[np.uint8]:
     down = np.linspace(0.5, -0.5, height)
     column = np.stack([np.interp(down, _HEIGHTS, colours[:, channel]) for channel in range(3)], axis=-1)
     return np.round(column).astype(np.uint8)[:, None, :]
+
+
+def _file(surface: trimesh.Trimesh) -> bytes:
+    return bytes(trimesh.exchange.gltf.export_glb(trimesh.Scene(surface), tree_postprocessor=_unlit))
 
 
 def _unlit(tree: dict[str, Any]) -> None:

@@ -2,7 +2,7 @@
 
 viser runs callbacks in a pool, overlapping and unordered; a person who drags a slider asks for a hundred results and
 wants the last. A ``LatestWorker`` runs tasks one after another; a task given under a key that still waits replaces the
-waiting one.
+waiting one. What a person's gesture asks for goes before what a run's news ask for, and so does what follows from it.
 """
 
 from __future__ import annotations
@@ -27,50 +27,66 @@ class LatestWorker:
 
     def __init__(self, name: str, on_error: Callable[[BaseException], None] | None = None, settle: float = 0.0) -> None:
         self._settle = settle
+        self._first: OrderedDict[str, Callable[[], None]] = OrderedDict()
         self._tasks: OrderedDict[str, Callable[[], None]] = OrderedDict()
         self._condition = threading.Condition()
         self._closed = False
         self._busy = False
+        self._pressed = False
         self._serial = 0
         self._on_error = on_error
         self._thread = threading.Thread(target=self._loop, name=name, daemon=True)
         self._thread.start()
 
-    def latest(self, key: str, task: Callable[[], None]) -> None:
-        """Run ``task`` soon; a task that still waits under the same key is forgotten."""
-        with self._condition:
-            if not self._closed:
-                self._tasks[key] = task
-                self._condition.notify_all()
+    def latest(self, key: str, task: Callable[[], None], first: bool = False) -> None:
+        """Run ``task`` soon; a task that still waits under the same key is forgotten.
 
-    def every(self, task: Callable[[], None]) -> None:
-        """Run ``task`` soon, whatever comes after it."""
+        Args:
+            key: of the waiting slot.
+            task: what to do.
+            first: before all that waits without it. A task that ran first passes it on to what it asks for.
+        """
+        with self._condition:
+            if self._closed:
+                return
+            first = first or (self._pressed and threading.current_thread() is self._thread)
+            if first:
+                self._tasks.pop(key, None)
+            (self._first if first or key in self._first else self._tasks)[key] = task
+            self._condition.notify_all()
+
+    def every(self, task: Callable[[], None], first: bool = False) -> None:
+        """Run ``task`` soon, whatever comes after it; ``first`` as in ``latest``."""
         with self._condition:
             self._serial += 1
             key = f"#{self._serial}"
-        self.latest(key, task)
+        self.latest(key, task, first)
 
     def waiting(self, key: str) -> bool:
         """Whether a newer task already waits under ``key`` (so that the present one may give up)."""
         with self._condition:
-            return key in self._tasks
+            return key in self._first or key in self._tasks
 
     def wait_until_idle(self, timeout: float) -> bool:
         """Block until nothing waits or runs; False when ``timeout`` seconds were not enough."""
         with self._condition:
-            return self._condition.wait_for(lambda: not self._tasks and not self._busy, timeout)
+            return self._condition.wait_for(lambda: not self._waits() and not self._busy, timeout)
+
+    def _waits(self) -> bool:
+        return bool(self._first) or bool(self._tasks)
 
     def close(self) -> None:
         """Forget what waits and end the thread after the present task."""
         with self._condition:
             self._closed = True
+            self._first.clear()
             self._tasks.clear()
             self._condition.notify_all()
 
     def _loop(self) -> None:
         while True:
             with self._condition:
-                self._condition.wait_for(lambda: self._closed or bool(self._tasks))
+                self._condition.wait_for(lambda: self._closed or self._waits())
                 if self._closed:
                     return
                 self._busy = True
@@ -80,7 +96,8 @@ class LatestWorker:
                 if self._closed:
                     self._busy = False
                     return
-                _, task = self._tasks.popitem(last=False)
+                self._pressed = bool(self._first)
+                _, task = (self._first or self._tasks).popitem(last=False)
             try:
                 task()
             # A view that stumbles must not take the page down; the user is told, the log keeps the trace.

@@ -186,11 +186,11 @@ class Designs:
         return self._answers.known_plan(self.case, variables)
 
     # ---- the 3D view -----------------------------------------------------------------------------------------------
-    def geometry(self, variables: DesignVariables) -> SceneGeometry:
-        """Meshes for the 3D view."""
+    def geometry(self, variables: DesignVariables, near: bool = True) -> SceneGeometry:
+        """Meshes for the 3D view, for a ship that is looked at closely or as a whole."""
         case = self.case
-        key = (case.hull, case.propeller, case.initial, variables.key())
-        return self._geometry.get(key, lambda: scene_geometry(case, variables))
+        key = (case.hull, case.propeller, case.initial, variables.key(), near)
+        return self._geometry.get(key, lambda: scene_geometry(case, variables, near))
 
     def ghost(self, variables: DesignVariables) -> NDArray[np.float64]:
         """A hull as a lines drawing in space: (n, 2, 3) segments of its sections and its waterline, both sides."""

@@ -18,7 +18,8 @@ from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.runs.executor import default_workers
 
-_PICTURE_SECONDS = 0.25
+# between two pictures of a run: what eyes need; and on a busy machine a rest of so many times what the last one took
+_PICTURE_SECONDS, _PICTURE_REST = 0.25, 2.0
 
 
 class Runs:
@@ -39,7 +40,7 @@ class Runs:
         self._keeper: RunKeeper | None = None
         self._guard = threading.RLock()
         self._pictures = LatestWorker("pictures")
-        self._refreshed = 0.0
+        self._rested = 0.0
         self._standing: tuple[object, ...] = ()
 
     def add_by_hand(self, evaluation: Evaluation) -> int:
@@ -135,10 +136,10 @@ class Runs:
 
     def _refresh(self) -> None:
         # A search tells of every evaluation; eyes need a few pictures a second.
-        pause = self._refreshed + _PICTURE_SECONDS - time.monotonic()
+        pause = self._rested - time.monotonic()
         if pause > 0.0:
             time.sleep(pause)
-        self._refreshed = time.monotonic()
+        began = time.monotonic()
         # Under the guard: between a run's picture and its display no other run must come on display.
         with self._guard:
             keeper = self._keeper
@@ -146,6 +147,8 @@ class Runs:
                 return
             picture = keeper.picture()
             self._display.show_run(picture, self._designs.first)
+        ended = time.monotonic()
+        self._rested = max(began + _PICTURE_SECONDS, ended + _PICTURE_REST * (ended - began))
         # the library says what may be deleted and continued: that changes too when the file is given back
         standing = (picture.name, picture.status, keeper.holds_file)
         if standing != self._standing:

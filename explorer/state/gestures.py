@@ -36,6 +36,6 @@ class Gestures:
         if handler is None:
             return
         if event.kind in _STREAMS:
-            self._worker.latest(f"{event.kind} {target}", lambda: handler(event))
+            self._worker.latest(f"{event.kind} {target}", lambda: handler(event), first=True)
         else:
-            self._worker.every(lambda: handler(event))
+            self._worker.every(lambda: handler(event), first=True)

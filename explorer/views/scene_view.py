@@ -73,10 +73,12 @@ class SceneView:
         self._made_room, self._keeps_panels = False, False
         self._spinning = threading.Event()
         self._dark: bool | None = None
+        # a surroundings' map as light doubles what a frame costs without graphics hardware; lamps do
+        client.scene.configure_environment_map(None)
         client.scene.configure_default_lights(cast_shadow=False)
         # light from below as well: half of what a naval architect looks at is under water
         client.scene.add_light_hemisphere(
-            "/lights/sky", sky_color=(255, 255, 255), ground_color=(190, 200, 215), intensity=1.6
+            "/lights/sky", sky_color=(255, 255, 255), ground_color=(190, 200, 215), intensity=3.2
         )
         session.hub.on(("selection", "options", "pins"), self._ask)
         session.hub.on(("size",), lambda: self.place_camera())
@@ -99,12 +101,16 @@ class SceneView:
             self._sky = self._client.scene.add_glb(
                 "/sky", sky(options.dark), scale=self._sky_radius, cast_shadow=False, receive_shadow=False
             )
+            if self._sea is not None:
+                self._sea.remove()
+                self._sea = None
         if shown is None:
             return
         ghost, pin = ghost_of(session, self._designs)
         ghost_colour = GHOST if pin is None else PINS[pin]
         state = (
             shown.key,
+            options.dark,
             options.ghost,
             ghost.key if ghost else None,
             ghost_colour,
@@ -120,9 +126,12 @@ class SceneView:
         )
         if state != self._drawn:
             try:
-                geometry = self._designs.geometry(shown.evaluation.variables)
+                near = options.camera in CLOSE_UPS
+                geometry = self._designs.geometry(shown.evaluation.variables, near)
                 variables = ghost.evaluation.variables if ghost else None
-                behind = (self._designs.geometry(variables), self._designs.ghost(variables)) if variables else None
+                behind = (
+                    (self._designs.geometry(variables, near), self._designs.ghost(variables)) if variables else None
+                )
             except HpsopError as error:
                 session.notify("No geometry for this design", str(error), "yellow")
                 return
@@ -183,8 +192,8 @@ class SceneView:
 
     def _water(self, geometry: SceneGeometry, visible: bool) -> None:
         if self._sea is None:
-            self._sea = self._client.scene.add_mesh_trimesh(
-                "/water", calm_water(), cast_shadow=False, receive_shadow=False
+            self._sea = self._client.scene.add_glb(
+                "/water", calm_water(bool(self._dark)), cast_shadow=False, receive_shadow=False
             )
         if self._sky is not None:
             self._sky_radius = _SKY_LENGTHS * geometry.length

@@ -169,9 +169,15 @@ class Plot:
         keep &= (px > area.left - 9) & (px < area.right + 9) & (py > area.top - 9) & (py < area.bottom + 9)
         # Equal pixels are drawn once; in a crowd whole pixels do, and the browser has a third of it to draw.
         pixels = np.column_stack([px[keep], py[keep]])
-        pixels = np.unique(np.round(pixels, 1 if len(pixels) <= _CROWD else 0), axis=0)
-        if pixels.size:
-            path = "".join(f"M{a:g} {b:g}h0" for a, b in pixels)
+        steps = 10.0 if len(pixels) <= _CROWD else 1.0
+        whole = np.round(pixels * steps).astype(np.int64).reshape(-1, 2)
+        # as one number each, which sorts ten times as fast as rows
+        corner, span = (whole.min(axis=0), int(np.ptp(whole[:, 1])) + 1) if len(whole) else (np.zeros(2, int), 1)
+        once = np.unique((whole - corner) @ np.array([span, 1]))
+        if once.size:
+            across = ((once // span + corner[0]) / steps).tolist()
+            down = ((once % span + corner[1]) / steps).tolist()
+            path = "".join([f"M{a:g} {b:g}h0" for a, b in zip(across, down, strict=True)])
             width = f"stroke-width:{2 * radius:g};{style}"
             self._elements.append(fill('<path d="{}" class="dots {}" style="{}"/>', path, css, width))
 

@@ -105,6 +105,18 @@ def test_no_design_dominates_a_drawn_front_without_a_word(case: Case):
     assert said.margin == ("", "")
 
 
+def test_who_is_better_than_a_front_is_found_in_a_crowd_as_by_asking_each(case: Case):
+    chance = np.random.default_rng(3)
+    points = np.round(chance.uniform(0.8, 1.0, (300, 2)), 2)
+    order = np.lexsort((points[:, 1], points[:, 0]))
+    # a front that is not quite one: some of its designs beat each other, and others stand on the same place
+    front = tuple(int(row) + 1 for row in order[20:120:9])
+    chosen = points[np.array(front) - 1]
+    expected = sum(any((other >= point).all() and (other > point).any() for other in chosen) for point in points)
+    said = beyond_fronts(_picture(case, [tuple(row) for row in points], [-1.0] * 300, front))
+    assert 0 < expected < 300 and said.count == expected
+
+
 def test_what_the_search_avoids_is_said_where_it_is_on_the_front(case: Case):
     margin = case.optimization.handover_margin
     points = [(0.9, 0.95), (0.95, 0.9), (0.9, 0.95), (0.91, 0.96)]

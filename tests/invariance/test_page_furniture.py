@@ -45,8 +45,21 @@ def test_paint_moves_with_the_hull_and_keeps_its_faces(ships):
         assert np.abs(first[0] - second[0]).max() > 0.1
 
 
-def test_walls_and_deck_are_the_topsides_and_nothing_twice(ships):
-    for ship in ships:
+def test_a_ship_seen_as_a_whole_has_a_third_of_the_triangles_in_the_same_place(case: Case, ships):
+    far = scene_geometry(case, case.initial.variables, near=False)
+    parts = ("underwater", "topsides", "blades", "hub")
+    assert sum(len(getattr(far, part)[1]) for part in parts) < 0.4 * sum(
+        len(getattr(ships[0], part)[1]) for part in parts
+    )
+    for part in (*parts, "deck"):
+        (first, _), (second, _) = getattr(far, part), getattr(ships[0], part)
+        assert np.abs(first.min(axis=0) - second.min(axis=0)).max() < 0.002 * far.length
+        assert np.abs(first.max(axis=0) - second.max(axis=0)).max() < 0.002 * far.length
+
+
+@pytest.mark.parametrize("near", [True, False])
+def test_walls_and_deck_are_the_topsides_and_nothing_twice(case: Case, ships, near: bool):
+    for ship in ships if near else (scene_geometry(case, case.initial.variables, near),):
         assert len(ship.deck[1]) > 100
         assert ship.deck[0][:, 2].min() > 0.5 * (ship.draft + ship.deck[0][:, 2].max())
         assert ship.topsides[0][:, 2].min() == pytest.approx(ship.draft)

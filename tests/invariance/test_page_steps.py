@@ -3,6 +3,8 @@
 from __future__ import annotations
 
 import dataclasses
+import threading
+from functools import partial
 from pathlib import Path
 from typing import Any
 
@@ -12,11 +14,13 @@ import pytest
 from explorer.charts.parallel import axes_of, brushed, moved
 from explorer.charts.scatter import pick_scatter, scatter_chart, scatter_limits, scatter_rows
 from explorer.scene.camera import PRESETS
+from explorer.server.bridge import PageEvent
 from explorer.server.worker import LatestWorker
 from explorer.services.library import RunLibrary
 from explorer.state.app_state import AppState
 from explorer.state.chart_options import ChartOptions
 from explorer.state.draft import Draft
+from explorer.state.gestures import Gestures
 from explorer.state.history import History
 from explorer.state.hub import Hub
 from explorer.state.link import Link, LinkedDesign, read_link
@@ -74,6 +78,48 @@ def test_settings_are_taken_back_and_made_again(case: Case):
         app.change_draft(lambda draft: draft.begin(load_case("dtc-p4119-paper")))
         assert app.turn_draft(back=True) and app.drafted() == changed
     finally:
+        worker.close()
+
+
+# ---- who comes first -------------------------------------------------------------------------------------------------
+def test_a_gesture_and_what_follows_from_it_go_before_a_runs_news():
+    worker = LatestWorker("test")
+    hub, held = Hub(worker), threading.Event()
+    done: list[str] = []
+    try:
+        for name in ("chart", "table", "curves"):
+            hub.on(("run",), partial(done.append, f"{name} of the run"))
+        hub.on(("tab",), partial(done.append, "the tab"))
+        gestures = Gestures(worker)
+        gestures.on("act", "tab", lambda event: hub.changed("tab"))
+        worker.every(lambda: bool(held.wait(10.0)))
+        hub.changed("run")
+        gestures.receive(PageEvent("act", name="tab"))
+        held.set()
+        assert worker.wait_until_idle(10.0)
+        assert done == ["the tab", "chart of the run", "table of the run", "curves of the run"]
+    finally:
+        held.set()
+        worker.close()
+
+
+def test_what_waits_already_goes_first_once_a_gesture_asks_for_it():
+    worker = LatestWorker("test")
+    held = threading.Event()
+    done: list[str] = []
+    try:
+        worker.every(lambda: bool(held.wait(10.0)))
+        worker.latest("table", lambda: done.append("table"))
+        worker.latest("chart", lambda: done.append("old chart"))
+        worker.latest("chart", lambda: done.append("chart"), first=True)
+        # news of a run that come after it do not put it behind again
+        worker.latest("chart", lambda: done.append("newer chart"))
+        assert worker.waiting("chart") and worker.waiting("table")
+        held.set()
+        assert worker.wait_until_idle(10.0)
+        assert done == ["newer chart", "table"]
+    finally:
+        held.set()
         worker.close()
 
 
