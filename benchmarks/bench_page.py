@@ -60,7 +60,7 @@ def streamed(
     space = case.bounds
     shares = [
         (value - low) / (high - low) if high > low else 0.0
-        for value, low, high in zip(variables.key(), space.lower, space.upper, strict=True)
+        for value, low, high in zip(space.values(variables).values(), space.lower, space.upper, strict=True)
     ]
     off = 0.2 * sum((share - 0.5) ** 2 for share in shares[1:])
     first, second = 0.9 + 0.2 * shares[0] + off, 1.1 - 0.2 * max(shares[0], 0.0) ** 0.5 + off

@@ -14,7 +14,7 @@ from hpsop_core.case import constraints
 from hpsop_core.case.case import KNOT, Case
 from hpsop_core.case.declared_variable import Variable
 from hpsop_core.case.objectives import objective_named
-from hpsop_core.case.variables import VARIABLE_TABLE, DesignVariables
+from hpsop_core.case.variables import SEARCH_TABLE, VARIABLE_NAMES, DesignVariables, value_of
 from hpsop_core.evaluation.result import Evaluation
 
 CONSTRAINT_GROUP = "Constraints (feasible ≤ 0)"
@@ -93,8 +93,8 @@ def change_text(initial: float | None, selected: float | None, decimals: int, re
     return f"{'+' if percent > 0 and text.strip('0.') else ''}{text} %"
 
 
-def _variable(item: Variable) -> Callable[[Evaluation], float | None]:
-    return lambda evaluation: item.shown(float(getattr(evaluation.variables, item.name)))
+def _variable(item: Variable, initial: DesignVariables) -> Callable[[Evaluation], float | None]:
+    return lambda evaluation: item.shown(float(value_of(item.name, evaluation.variables, initial)))
 
 
 def _hull(name: str, scale: float = 1.0) -> Callable[[Evaluation], float | None]:
@@ -160,27 +160,30 @@ def _diameter_to_draft(evaluation: Evaluation) -> float | None:
     return evaluation.variables.diameter / evaluation.variables.draft
 
 
-def variable_quantities(initial: DesignVariables) -> tuple[Quantity, ...]:
-    """The design variables as declared, lengths with the digits that the initial's size asks for."""
-    return tuple(
-        Quantity(
-            item.name,
-            item.label,
-            item.symbol,
-            item.unit,
-            item.decimals_near(value),
-            _variable(item),
-            "Variables",
-            formula=item.rule.meaning,
-        )
-        for item, value in zip(VARIABLE_TABLE.values(), initial.key(), strict=True)
+def variable_quantity(name: str, initial: DesignVariables) -> Quantity:
+    """A design variable as declared, a length with the digits that the initial's size asks for."""
+    item = SEARCH_TABLE[name]
+    return Quantity(
+        name,
+        item.label,
+        item.symbol,
+        item.unit,
+        item.decimals_near(value_of(name, initial, initial)),
+        _variable(item, initial),
+        "Variables",
+        formula=item.rule.meaning,
     )
+
+
+def variable_quantities(case: Case) -> tuple[Quantity, ...]:
+    """The variables that a case searches, then what follows from them."""
+    names = dict.fromkeys((*case.bounds.names, *VARIABLE_NAMES))
+    return tuple(variable_quantity(name, case.initial.variables) for name in names)
 
 
 def free_variables(case: Case) -> list[Quantity]:
     """The variables that a case does not fix."""
-    quantities = variable_quantities(case.initial.variables)
-    return [quantities[index] for index in case.bounds.free]
+    return [variable_quantity(case.bounds.names[index], case.initial.variables) for index in case.bounds.free]
 
 
 HULL: tuple[Quantity, ...] = (
@@ -546,7 +549,7 @@ def violated(evaluation: Evaluation) -> list[str]:
 
 def standing_on(evaluation: Evaluation) -> list[str]:
     """Which bounds and limits a design stands on, in words."""
-    lines = [f"{VARIABLE_TABLE[name].symbol} on its {side} bound" for name, side in evaluation.active_bounds.items()]
+    lines = [f"{SEARCH_TABLE[name].symbol} on its {side} bound" for name, side in evaluation.active_bounds.items()]
     values = evaluation.constraints
     lines += [
         f"{item.label} ({item.symbol}) at its limit"

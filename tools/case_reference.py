@@ -13,7 +13,7 @@ from hpsop_core.case.case import SECTIONS, SHIPPED_CASES, load_case
 from hpsop_core.case.constraints import CONSTRAINTS
 from hpsop_core.case.fields import FieldRule, rules, toml_text
 from hpsop_core.case.objectives import OBJECTIVES
-from hpsop_core.case.variables import VARIABLE_TABLE
+from hpsop_core.case.variables import SEARCH_TABLE, STANDS_FOR, VARIABLE_TABLE
 
 _HEAD = """# The case file
 
@@ -30,6 +30,7 @@ _BOUNDS = """
 Lower and upper bound of each design variable; equal bounds fix it. Not stated, these are fixed at the initial design's
 values: {optional}. The initial design's own displacement_ratio is 1 here, whatever [initial] states:
 that one is over the parent's form, this one over the initial design.
+{stand_ins}
 
 | variable | symbol | unit | may be | meaning |
 |---|---|---|---|---|"""
@@ -42,8 +43,13 @@ def case_reference() -> str:
         case = load_case(name)
         parts.append(f"* **{name}**: {case.title}. {' '.join(case.description.split())}")
     optional = ", ".join(name for name, variable in VARIABLE_TABLE.items() if not variable.bounds_required)
-    parts.append(_BOUNDS.format(optional=optional))
-    for name, variable in VARIABLE_TABLE.items():
+    stand_ins = " ".join(
+        f"A case states {name} or {other}, not both: what it states is searched, and the other follows from it and the "
+        "main dimensions. --set and Case.design take either one in any case."
+        for name, other in STANDS_FOR.items()
+    )
+    parts.append(_BOUNDS.format(optional=optional, stand_ins=stand_ins))
+    for name, variable in SEARCH_TABLE.items():
         rule = variable.rule
         parts.append(f"| {name} | {variable.symbol} | {rule.unit or '-'} | {_limits(rule)} | {rule.meaning} |")
     for section, declaration in SECTIONS.items():

@@ -29,7 +29,7 @@ _DIGITS = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789", "_ ")
 def known_columns(picture: RunPicture) -> dict[str, Quantity]:
     """What a column can show of this run, by key."""
     case = picture.case
-    declared = (*all_quantities(condition_names(case)), *variable_quantities(case.initial.variables))
+    declared = (*all_quantities(condition_names(case)), *variable_quantities(case))
     held = {"f1", "f2", *picture.columns}
     found: dict[str, Quantity] = {}
     for item in declared:

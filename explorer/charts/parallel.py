@@ -9,7 +9,7 @@ from numpy.typing import NDArray
 
 from explorer.charts.colour_ramp import colour_of, finite_limits
 from explorer.state.run_picture import RunPicture
-from hpsop_core.case.variables import VARIABLE_TABLE
+from hpsop_core.case.variables import SEARCH_TABLE
 from hpsop_core.markup import Markup, fill, joined, symbol_svg
 from hpsop_core.quantities import OBJECTIVES, Quantity, all_quantities, condition_names, free_variables, number_text
 
@@ -166,9 +166,9 @@ def _axis_limits(picture: RunPicture, quantity: Quantity, values: NDArray[np.flo
     usable = values[picture.feasible] if values is not None else np.zeros(0)
     usable = usable[np.isfinite(usable)]
     low, high = (float(usable.min()), float(usable.max())) if usable.size else (np.inf, -np.inf)
-    if quantity.key in VARIABLE_TABLE:
-        shown = VARIABLE_TABLE[quantity.key].shown
-        bounds = picture.case.bounds.as_dict()[quantity.key]
+    bounds = picture.case.bounds.as_dict().get(quantity.key)
+    if bounds is not None:
+        shown = SEARCH_TABLE[quantity.key].shown
         low, high = min(low, shown(bounds[0])), max(high, shown(bounds[1]))
     if not low <= high:
         return 0.0, 1.0

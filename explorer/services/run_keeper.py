@@ -341,7 +341,7 @@ class RunKeeper:
         case = self.case
         if not self._quantities:
             self._quantities = (
-                *variable_quantities(case.initial.variables),
+                *variable_quantities(case),
                 *all_quantities(condition_names(case)),
             )
             self._table = np.zeros((0, len(self._quantities)))

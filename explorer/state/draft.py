@@ -10,7 +10,7 @@ from typing import Any
 
 from hpsop_core.case.case import SECTIONS, SHIPPED_CASES, Case, case_from_toml, load_case
 from hpsop_core.case.fields import checked_value, rules
-from hpsop_core.case.variables import VARIABLE_TABLE, DesignSpace, DesignVariables
+from hpsop_core.case.variables import SEARCH_TABLE, DesignSpace, DesignVariables, interchangeable, value_of
 from hpsop_core.errors import InputError
 
 
@@ -98,9 +98,9 @@ class Draft:
             self.set("bounds", name, pair)
 
     def base_value(self, section: str, name: str) -> Any:
-        """What the preset says."""
+        """What the preset says; None of bounds that it does not have."""
         if section == "bounds":
-            return self.base.bounds.as_dict()[name]
+            return self.base.bounds.as_dict().get(name)
         return getattr(getattr(self.base, section), name)
 
     def value(self, section: str, name: str) -> Any:
@@ -131,24 +131,37 @@ class Draft:
         except InputError:
             return self.base.initial.variables
 
+    def searched(self) -> tuple[str, ...]:
+        """The variables that are searched, as they stand."""
+        return self.base.bounds.names_with(self.changes.get("bounds", {}))
+
+    def search_by(self, name: str) -> None:
+        """Search this variable in the place of its stand-in, or the other way round, within its usual bounds."""
+        for other in interchangeable(name):
+            self.reset("bounds", other)
+        if name not in self.searched():
+            initial = self.initial()
+            self.set("bounds", name, SEARCH_TABLE[name].bounds_near(value_of(name, initial, initial)))
+
     def search_around_initial(self) -> None:
         """Usual bounds around the initial design for what is searched; what is fixed stays so, at its value."""
         initial = self.initial()
-        for name, (low, high) in DesignSpace.around(initial).as_dict().items():
-            value = float(getattr(initial, name))
+        for name, (low, high) in DesignSpace.around(initial, self.searched()).as_dict().items():
+            value = float(value_of(name, initial, initial))
             lower, upper = self.value("bounds", name)
             if lower == upper:
                 low, high = value, value
             elif low == high:
                 # cases usually fix this one, and this case frees it: as far as its slider goes
-                low, high = VARIABLE_TABLE[name].reach_near(value)
+                low, high = SEARCH_TABLE[name].reach_near(value)
             self.set("bounds", name, (low, high))
 
     def widen(self, name: str, side: str) -> None:
         """Move a variable's "lower" or "upper" bound out by a quarter of its range, in whole steps, within its rule."""
-        variable = VARIABLE_TABLE[name]
+        variable = SEARCH_TABLE[name]
         lower, upper = self.value("bounds", name)
-        step = variable.step_near(getattr(self.initial(), name))
+        initial = self.initial()
+        step = variable.step_near(value_of(name, initial, initial))
         reach = max(1.0, math.ceil(round(0.25 * (upper - lower) / step, 6))) * step
         if side == "lower":
             lower = max(round(lower - reach, 10), variable.rule.lower)
@@ -162,7 +175,7 @@ class Draft:
         Raises:
             InputError: not within the variable's rule, or beyond the other bound.
         """
-        variable = VARIABLE_TABLE[name]
+        variable = SEARCH_TABLE[name]
         lower, upper = self.value("bounds", name)
         whole = variable.whole and math.isfinite(value) and value == round(value)
         new = checked_value(variable.typed(value) if whole else value, variable.rule, variable.symbol)
@@ -211,7 +224,8 @@ class Draft:
                     if section == "bounds":
                         low, high = value
                         base.with_bounds({name: (low, high)})
-                        taken: Any = (type(known[name][0])(low), type(known[name][1])(high))
+                        like = type(known[name][0]) if name in known else float
+                        taken: Any = (like(low), like(high))
                     else:
                         taken = checked_value(value, rules(SECTIONS[section])[name], f"{section}: {name}")
                 except (InputError, KeyError, TypeError, ValueError):

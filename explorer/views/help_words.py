@@ -127,7 +127,7 @@ def help_card(case: Case) -> Markup:
     )
     condition = condition_quantities(("",))
     groups = (
-        ("Design variables", _rows(variable_quantities(case.initial.variables))),
+        ("Design variables", _rows(variable_quantities(case))),
         ("Objectives (a case chooses two; less is better)", objectives),
         ("Constraints (g ≤ 0 is kept)", _rows(CONSTRAINTS)),
         ("Hull", _rows(HULL)),

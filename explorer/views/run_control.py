@@ -8,7 +8,7 @@ from explorer.server.bridge import PageEvent
 from explorer.services.runs import Runs
 from explorer.state.session import Session
 from explorer.views.settings_fields import in_words
-from hpsop_core.case.variables import VARIABLE_TABLE
+from hpsop_core.case.variables import SEARCH_TABLE, interchangeable
 from hpsop_core.errors import HpsopError, InputError
 
 
@@ -40,6 +40,7 @@ class RunControl:
             ("redo", lambda event: self._turn(back=False), ""),
             ("widen", lambda event: self._widen(event.arg), ""),
             ("bound", lambda event: self._bound(event.arg), ""),
+            ("search_by", lambda event: self._search_by(event.arg), ""),
         )
         for name, action, told in actions:
             session.gestures.on("act", name, self._guarded(action, told))
@@ -72,21 +73,27 @@ class RunControl:
     def _widen(self, argument: str) -> None:
         """Move a bound out by a quarter of its range: "length_to_breadth.upper"."""
         name, _, side = argument.partition(".")
-        if name not in VARIABLE_TABLE or side not in ("lower", "upper"):
+        if name not in self._app.draft.searched() or side not in ("lower", "upper"):
             raise InputError(f"widen: {argument[:40]!r} is no bound")
         self._app.change_draft(lambda draft: draft.widen(name, side), whole=True)
+
+    def _search_by(self, name: str) -> None:
+        """Search a variable instead of its stand-in, or the other way round."""
+        if name not in interchangeable(name):
+            raise InputError(f"bounds: {name[:40]!r} has nothing that could stand in for it")
+        self._app.change_draft(lambda draft: draft.search_by(name), whole=True)
 
     def _bound(self, argument: str) -> None:
         """A bound typed into its box: "length_to_breadth.upper=8.2", in SI units."""
         place, _, text = argument.partition("=")
         name, _, side = place.partition(".")
-        if name not in VARIABLE_TABLE or side not in ("lower", "upper"):
+        if name not in self._app.draft.searched() or side not in ("lower", "upper"):
             raise InputError(f"bounds: {place[:40]!r} is no bound")
         try:
-            value = round(float(text) / VARIABLE_TABLE[name].scale, 10)
+            value = round(float(text) / SEARCH_TABLE[name].scale, 10)
             self._app.change_draft(lambda draft: draft.set_bound(name, side, value))
         except ValueError:
-            raise InputError(f"{VARIABLE_TABLE[name].symbol}: {text[:20]!r} is no number; write one as 8.2") from None
+            raise InputError(f"{SEARCH_TABLE[name].symbol}: {text[:20]!r} is no number; write one as 8.2") from None
         finally:
             # the slider follows the box, and a refused box its slider
             self._app.show_settings()

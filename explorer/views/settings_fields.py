@@ -6,7 +6,7 @@ import re
 from decimal import Decimal
 
 from hpsop_core.case.declared_variable import Variable, declared_variables
-from hpsop_core.case.variables import VARIABLE_TABLE, StatedVariables
+from hpsop_core.case.variables import SEARCH_TABLE, StatedVariables
 
 
 def variable_label(variable: Variable) -> str:
@@ -157,7 +157,7 @@ STEPS = {
     "stagnation_tolerance": 1e-4,
     # a model's dimensions are typed in tenths of a millimetre
     **dict.fromkeys(("length", "breadth", "draft", "diameter"), 1e-4),
-    **{name: 0.1 * variable.step for name, variable in VARIABLE_TABLE.items() if variable.step},
+    **{name: 0.1 * variable.step for name, variable in SEARCH_TABLE.items() if variable.step},
 }
 SEARCH_FIELDS: tuple[tuple[str, str, str], ...] = (
     ("optimization", "population", "Population"),
@@ -167,7 +167,7 @@ SEARCH_FIELDS: tuple[tuple[str, str, str], ...] = (
 )
 _LABELS = {(section, name): label for _, fields in CASE_FIELDS for section, name, label in fields}
 _LABELS |= {(section, name): label for section, name, label in SEARCH_FIELDS}
-_LABELS |= {("bounds", name): variable.symbol for name, variable in VARIABLE_TABLE.items()}
+_LABELS |= {("bounds", name): variable.symbol for name, variable in SEARCH_TABLE.items()}
 
 
 _SPOKEN = {name: label for (_, name), label in _LABELS.items() if "_" in name}

@@ -28,10 +28,10 @@ from explorer.views.settings_fields import (
 )
 from hpsop_core.case.case import SHIPPED_CASES, load_case
 from hpsop_core.case.fields import checked_value, rules
-from hpsop_core.case.variables import ON_BOUND, VARIABLE_TABLE
+from hpsop_core.case.variables import ON_BOUND, SEARCH_TABLE, STANDS_FOR, VARIABLE_NAMES, interchangeable, value_of
 from hpsop_core.errors import InputError
 from hpsop_core.markup import Markup, fill, joined
-from hpsop_core.quantities import Quantity, variable_quantities
+from hpsop_core.quantities import Quantity, variable_quantity
 
 # A field is typed digit by digit; what cannot be taken is refused when the typing has rested so long.
 _TYPING_SECONDS = 1.5
@@ -54,9 +54,10 @@ class SettingsView:
         self._gui = gui
         self._typing: dict[tuple[str, str], int] = {}
         self._serial = itertools.count(1)
+        # by the variables that name a design: a stand-in takes over what belongs to the one in whose place it is
         self._readouts: dict[str, Slot] = {}
         self._sliders: dict[str, Any] = {}
-        self._ends_for: dict[str, float] = {}
+        self._ends_for: dict[str, tuple[str, float]] = {}
         self._widgets: dict[tuple[str, str], Any] = {}
         self._labels: dict[tuple[str, str], str] = {}
         with space:
@@ -72,8 +73,8 @@ class SettingsView:
                 step=1,
                 hint="processes of a run; the result is the same",
             )
-            for key in VARIABLE_TABLE:
-                self._add_slider(key)
+            for place in VARIABLE_NAMES:
+                self._add_slider(place)
             # below the sliders, which must not move away from under the mouse at the first drag
             self._changed = Slot(gui)
             self._around = gui.add_button(
@@ -110,8 +111,17 @@ class SettingsView:
         return names if self._app.draft.base.name in names else [self._app.draft.base.name, *names]
 
     # ---- bounds ----------------------------------------------------------------------------------------------------
-    def _add_slider(self, key: str) -> None:
-        variable, value = VARIABLE_TABLE[key], getattr(self._app.draft.initial(), key)
+    def _key(self, place: str) -> str:
+        """The variable that a slider bounds."""
+        return self._app.draft.searched()[VARIABLE_NAMES.index(place)]
+
+    def _initial_value(self, key: str) -> float:
+        initial = self._app.draft.initial()
+        return float(value_of(key, initial, initial))
+
+    def _add_slider(self, place: str) -> None:
+        key = self._key(place)
+        variable, value = SEARCH_TABLE[key], self._initial_value(key)
         low, high = (variable.typed(bound) for bound in self._app.draft.value("bounds", key))
         least, most = (variable.typed(end) for end in variable.reach_near(value))
         slider = self._gui.add_multi_slider(
@@ -123,36 +133,41 @@ class SettingsView:
             hint=variable.rule.meaning,
             marks=(),
         )
-        readout = Slot(self._gui)
-        self._sliders[key], self._readouts[key], self._ends_for[key] = slider, readout, value
+        self._sliders[place], self._readouts[place] = slider, Slot(self._gui)
+        self._ends_for[place] = key, value
 
         def update(event: viser.GuiEvent[Any]) -> None:
             if event.client_id is not None:
-                self._on_bounds(key, event)
+                self._on_bounds(place, event)
 
         slider.on_update(update)
 
     def _follow_initial(self) -> None:
         """Ends and steps of the sliders for the initial design; they stay while only bounds change under the mouse."""
-        for key, value in self._app.draft.initial().as_dict().items():
-            if value == self._ends_for[key]:
+        for place, slider in self._sliders.items():
+            key = self._key(place)
+            value = self._initial_value(key)
+            if (key, value) == self._ends_for[place]:
                 continue
-            variable, slider = VARIABLE_TABLE[key], self._sliders[key]
-            self._ends_for[key] = value
+            variable = SEARCH_TABLE[key]
+            if key != self._ends_for[place][0]:
+                slider.label, slider.hint = variable_label(variable), variable.rule.meaning
+            self._ends_for[place] = key, value
             slider.min, slider.max = (variable.typed(end) for end in variable.reach_near(value))
             slider.step = variable.typed(variable.step_near(value))
             slider.precision = slider_decimals(variable, value)
-            self._show_bounds(key)
+            self._show_bounds(place)
 
-    def _on_bounds(self, key: str, event: viser.GuiEvent[Any]) -> None:
+    def _on_bounds(self, place: str, event: viser.GuiEvent[Any]) -> None:
         try:
-            self.set_bounds(key, event.target.value)
+            self.set_bounds(self._key(place), event.target.value)
         except InputError as error:
             self._app.refuse(event.client_id or 0, in_words(str(error)))
-            self._show_bounds(key)
+            self._show_bounds(place)
 
-    def _show_bounds(self, key: str) -> None:
-        slider, (low, high) = self._sliders[key], self._app.draft.value("bounds", key)
+    def _show_bounds(self, place: str) -> None:
+        key, slider = self._key(place), self._sliders[place]
+        low, high = self._app.draft.value("bounds", key)
         slider.min, slider.max = min(slider.min, low), max(slider.max, high)
         set_value(slider, (self._typed(key, low), self._typed(key, high)))
 
@@ -162,7 +177,7 @@ class SettingsView:
         Raises:
             InputError: not two finite numbers within the slider, or reversed.
         """
-        slider, rule = self._sliders[key], VARIABLE_TABLE[key].rule
+        slider, rule = self._sliders[STANDS_FOR.get(key, key)], SEARCH_TABLE[key].rule
         if (
             not isinstance(value, list | tuple)
             or len(value) != 2
@@ -183,7 +198,7 @@ class SettingsView:
 
     @staticmethod
     def _typed(key: str, value: float) -> float | int:
-        return VARIABLE_TABLE[key].typed(value)
+        return SEARCH_TABLE[key].typed(value)
 
     # ---- fields ----------------------------------------------------------------------------------------------------
     def add_field(self, section: str, name: str, label: str) -> None:
@@ -293,15 +308,16 @@ class SettingsView:
         if tuple(self._preset.options) != tuple(names):
             self._preset.options = names
         set_value(self._preset, name)
-        for key in self._sliders:
-            self._show_bounds(key)
+        self._follow_initial()
+        for place in self._sliders:
+            self._show_bounds(place)
         for section, field in self._widgets:
             self._show_field(section, field)
         self.draw()
 
     def _title(self, section: str, name: str) -> str:
         if section == "bounds":
-            return VARIABLE_TABLE[name].symbol
+            return SEARCH_TABLE[name].symbol
         return self._labels.get((section, name), name)
 
     # ---- drawing ---------------------------------------------------------------------------------------------------
@@ -339,15 +355,16 @@ class SettingsView:
             label = self._labels[(section, name)] + (" ●" if draft.changed(section, name) else "")
             if widget.label != label:
                 widget.label = label
-        for quantity in variable_quantities(self._app.draft.initial()):
-            shown = VARIABLE_TABLE[quantity.key].shown
+        for key, readout in zip(draft.searched(), self._readouts.values(), strict=True):
+            quantity = variable_quantity(key, draft.initial())
+            shown = SEARCH_TABLE[quantity.key].shown
             low, high = draft.value("bounds", quantity.key)
             unit = f" {quantity.unit}" if quantity.unit else ""
             mark = " ●" if draft.changed("bounds", quantity.key) else ""
-            self._readouts[quantity.key].show(
+            readout.show(
                 fill(
                     '<div class="hp readout" data-variable="{}"><span>{} … {}{}{}</span><span class="level">{}</span>'
-                    "{}</div>",
+                    "{}{}</div>",
                     quantity.key,
                     self._box(quantity, "lower", shown(low)),
                     self._box(quantity, "upper", shown(high)),
@@ -355,13 +372,24 @@ class SettingsView:
                     fill(" {}", "fixed") if low == high else NOTHING,
                     mark,
                     self._pressed(quantity.key),
+                    self._stand_in(quantity.key),
                 )
             )
 
+    @staticmethod
+    def _stand_in(key: str) -> Markup:
+        """A button that searches what could stand in a variable's place."""
+        others = (SEARCH_TABLE[name] for name in interchangeable(key) if name != key)
+        words = [
+            chip("search_by", f"search {item.symbol} instead", item.name, hint=f"{item.label}: {item.rule.meaning}")
+            for item in others
+        ]
+        return chips(*words) if words else NOTHING
+
     def _box(self, quantity: Quantity, side: str, value: float) -> Markup:
         """A number box for one bound: to be typed into, and stepped by the arrow keys."""
-        variable = VARIABLE_TABLE[quantity.key]
-        step = variable.scale * variable.step_near(getattr(self._app.draft.initial(), quantity.key))
+        variable = SEARCH_TABLE[quantity.key]
+        step = variable.scale * variable.step_near(self._initial_value(quantity.key))
         return fill(
             '<input type="number" class="bound" data-set="bound" data-arg="{}.{}" value="{:.{}f}" step="{:g}" '
             'aria-label="{}, {} bound">',
@@ -379,10 +407,10 @@ class SettingsView:
         picture = self._app.picture
         newest = picture.generations[-1] if picture.generations else None
         values = picture.column(key) if newest is not None else None
-        bounds = picture.case.bounds.as_dict()[key]
-        if newest is None or values is None or self._app.draft.value("bounds", key) != bounds:
+        bounds = picture.case.bounds.as_dict().get(key)
+        if newest is None or values is None or bounds is None or self._app.draft.value("bounds", key) != bounds:
             return NOTHING
-        front, (low, high) = values[picture.rows(newest.front)], VARIABLE_TABLE[key].shown_pair(bounds)
+        front, (low, high) = values[picture.rows(newest.front)], SEARCH_TABLE[key].shown_pair(bounds)
         near = ON_BOUND * (high - low)
         words = []
         for side, count in (("lower", int((front <= low + near).sum())), ("upper", int((front >= high - near).sum()))):

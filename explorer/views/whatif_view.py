@@ -18,7 +18,7 @@ from explorer.views.chips import NOTHING, box, chip, chips, soft
 from explorer.views.on_display import select_design
 from explorer.views.settings_fields import slider_decimals, standing_hint, standing_label, variable_label
 from explorer.views.tables import headline, warnings_html
-from hpsop_core.case.variables import VARIABLE_TABLE, DesignVariables
+from hpsop_core.case.variables import SEARCH_TABLE, VARIABLE_NAMES, DesignVariables
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.markup import Markup, fill, joined
 from hpsop_core.quantities import conditions_of, number_text
@@ -37,15 +37,18 @@ class WhatIfView:
         self._history: History[Shown] = History()
         self._html = Slot(gui)
         self._steps = Slot(gui)
+        # by the variables that name a design: a stand-in takes over what belongs to the one in whose place it is
         self._sliders: dict[str, Any] = {}
+        self._space = session.picture.case.bounds
         self._initial = session.picture.case.initial.variables
-        for key, variable in VARIABLE_TABLE.items():
-            value = getattr(self._initial, key)
+        for place, (key, value) in zip(VARIABLE_NAMES, self._space.values(self._initial).items(), strict=True):
+            variable = SEARCH_TABLE[key]
+            value = variable.typed(value)
             low, high = (variable.typed(end) for end in variable.reach_near(value))
             step = variable.typed(variable.step_near(value))
             slider = gui.add_slider(variable_label(variable), low, high, step, value, hint=variable.rule.meaning)
             slider.on_update(self._moved)
-            self._sliders[key] = slider
+            self._sliders[place] = slider
         self._level2 = gui.add_button(_LEVEL2, hint="Rankine panels and blade panels, about a second")
         self._add = gui.add_button("Add to the run's archive as a hand-made design", color="gray")
         self._level2.on_click(self._on_level2)
@@ -58,24 +61,25 @@ class WhatIfView:
         self._show_buttons()
 
     def _variables(self) -> DesignVariables:
-        values: dict[str, object] = {}
-        for key, slider in self._sliders.items():
+        values: list[float] = []
+        for key, slider in zip(self._space.names, self._sliders.values(), strict=True):
             value = slider.value
             if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
                 raise InputError(f"what-if: {key} is not a finite number; move its slider")
             # A browser may send anything; the slider's own range is the limit.
             clamped = min(max(value, slider.min), slider.max)
-            values[key] = VARIABLE_TABLE[key].typed(clamped)
-        return DesignVariables.from_dict(values, "what-if")
+            values.append(SEARCH_TABLE[key].typed(clamped))
+        return DesignVariables.from_dict(self._space.design(values).as_dict(), "what-if")
 
     def _reach(self) -> None:
-        """Ends and steps of the sliders for the run on display."""
-        initial = self._session.picture.case.initial.variables
-        if initial == self._initial:
+        """What the sliders move, their ends and steps, for the run on display."""
+        case = self._session.picture.case
+        same = (case.initial.variables, case.bounds.names) == (self._initial, self._space.names)
+        self._space, self._initial = case.bounds, case.initial.variables
+        if same:
             return
-        self._initial = initial
-        for key, slider in self._sliders.items():
-            variable, value = VARIABLE_TABLE[key], getattr(initial, key)
+        for slider, (key, value) in zip(self._sliders.values(), self._space.values(self._initial).items(), strict=True):
+            variable = SEARCH_TABLE[key]
             slider.min, slider.max = (variable.typed(end) for end in variable.reach_near(value))
             slider.step = variable.typed(variable.step_near(value))
             slider.precision = slider_decimals(variable, value)
@@ -87,8 +91,9 @@ class WhatIfView:
         # the sliders' own answer must not move them: they may be further on already
         if shown is not self._own:
             self._reach()
-            for key, slider in self._sliders.items():
-                value = getattr(shown.evaluation.variables, key)
+            values = self._space.values(shown.evaluation.variables)
+            for slider, (key, number) in zip(self._sliders.values(), values.items(), strict=True):
+                value = SEARCH_TABLE[key].typed(number)
                 if value < slider.min:
                     slider.min = value
                 if value > slider.max:
@@ -99,8 +104,8 @@ class WhatIfView:
 
     def _mark_bounds(self, shown: Shown) -> None:
         """An arrow at every slider whose variable stands on a bound of the case, and words under the pointer."""
-        for key, slider in self._sliders.items():
-            variable, side = VARIABLE_TABLE[key], shown.evaluation.active_bounds.get(key)
+        for key, slider in zip(self._space.names, self._sliders.values(), strict=True):
+            variable, side = SEARCH_TABLE[key], shown.evaluation.active_bounds.get(key)
             label = standing_label(variable, side)
             if slider.label != label:
                 slider.label, slider.hint = label, standing_hint(variable, side)

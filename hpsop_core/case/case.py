@@ -26,7 +26,7 @@ from hpsop_core.case.sections import (
     PropellerSection,
 )
 from hpsop_core.case.ship import EngineSection, LoadingSection
-from hpsop_core.case.variables import VARIABLE_TABLE, DesignSpace
+from hpsop_core.case.variables import SEARCH_TABLE, STANDS_FOR, DesignSpace, DesignVariables, searched, value_of
 from hpsop_core.errors import InputError
 from hpsop_core.reading import LARGEST_CASE, file_name, read_bytes
 
@@ -89,7 +89,8 @@ class Case:
         limits = self.constraints
         if limits.diameter_to_draft_lower > limits.diameter_to_draft_upper:
             raise InputError("constraints: diameter_to_draft_lower exceeds diameter_to_draft_upper; swap them")
-        _ = self.initial.variables  # refuses proportions that no design may have
+        # refuses proportions that no design may have
+        object.__setattr__(self, "bounds", self.bounds.about(self.initial.variables))
         for name in (self.objectives.first, self.objectives.second):
             self._check_objective(name)
 
@@ -164,12 +165,35 @@ class Case:
         return dataclasses.replace(self, **sections)
 
     def with_bounds(self, bounds: Mapping[str, tuple[float, float]]) -> Case:
-        """The same case with some bounds changed; the others stay.
+        """The same case with some bounds changed; the others stay (``DesignSpace.changed``).
 
         Raises:
             InputError: as ``DesignSpace.from_bounds``.
         """
-        return dataclasses.replace(self, bounds=DesignSpace.from_bounds({**self.bounds.as_dict(), **bounds}))
+        return dataclasses.replace(self, bounds=self.bounds.changed(bounds))
+
+    def design(self, changes: Mapping[str, object], where: str = "design") -> DesignVariables:
+        """The initial design with some variables changed.
+
+        The others stay as the case searches them: where its bounds name block_coefficient_ratio that one stays, and
+        the displacement follows the main dimensions. Either of the two may be among the changes, in any case.
+
+        Raises:
+            InputError: an unknown name, a refused value, or both of them.
+        """
+        initial = self.initial.variables
+        for name in changes:
+            if name not in SEARCH_TABLE:
+                raise unknown_name(name, list(SEARCH_TABLE), where)
+        names = self.bounds.names_with(changes, where)
+        plain = {name: value for name, value in changes.items() if name not in STANDS_FOR}
+        design = initial.replaced(plain, where)
+        for name, other in STANDS_FOR.items():
+            if name in names:
+                asked = changes.get(name, value_of(name, initial, initial))
+                ratio = checked_value(asked, SEARCH_TABLE[name].rule, f"{where}: {name}")
+                design = design.replaced({other: ratio * (design.box / initial.box)}, where)
+        return design
 
 
 def _check_speeds(speeds_knots: tuple[float, ...], wave_speed: float) -> None:
@@ -256,8 +280,8 @@ def _assembled(tables: Mapping[str, Any], texts: Mapping[str, Any], where: str, 
             sections["propeller"] = _absolute(sections["propeller"], "propeller", ("geometry",), folder)
         sections["initial"] = _own_dimensions(sections["hull"], sections["initial"], tables["initial"])
         bounds = dict(tables["bounds"])
-        for name, variable in VARIABLE_TABLE.items():
-            if not variable.bounds_required:
+        for name in searched(bounds, "bounds"):
+            if not SEARCH_TABLE[name].bounds_required:
                 bounds.setdefault(name, (getattr(sections["initial"].variables, name),) * 2)
         return Case(
             name=texts.get("name", stem),

@@ -12,7 +12,7 @@ from typing import Any
 
 from hpsop_core.case.case import Case, load_case
 from hpsop_core.case.fields import FieldRule, checked_value
-from hpsop_core.case.variables import VARIABLE_NAMES, VARIABLE_TABLE, DesignVariables
+from hpsop_core.case.variables import SEARCH_TABLE, VARIABLE_TABLE, DesignVariables
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.levels import FAST, LEVEL_NUMBERS, LEVELS
 
@@ -37,7 +37,7 @@ def add_set(parser: argparse.ArgumentParser) -> None:
         nargs="+",
         default=[],
         metavar="NAME=VALUE",
-        help=f"change a design variable ({', '.join(VARIABLE_NAMES)}) or a field of the case (section.field)",
+        help=f"change a design variable ({', '.join(SEARCH_TABLE)}) or a field of the case (section.field)",
     )
 
 
@@ -69,8 +69,7 @@ def case_and_design(name: str, changes: Sequence[str]) -> tuple[Case, DesignVari
         case = case.changed(fields)
     except InputError as error:
         raise InputError(f"--set {error}") from error
-    initial = case.initial.variables
-    return case, initial.replaced(variables, "--set") if variables else initial
+    return case, case.design(variables, "--set") if variables else case.initial.variables
 
 
 def _case_field(case: Case, field: str, word: str) -> tuple[str, str, object]:

@@ -181,7 +181,7 @@ _SIDES = {"": "", "lower": "v", "upper": "^"}
 def _row(case: Case, record: DesignRecord, mark: str, free: Sequence[str]) -> list[str]:
     evaluation = record.evaluation
     active = case.bounds.active(evaluation.variables)
-    values = evaluation.variables.as_dict()
+    values = case.bounds.values(evaluation.variables)
     objectives = [evaluation.objectives["f1"], evaluation.objectives["f2"]]
     numbers = ["failed" if value is None else f"{value:.5f}" for value in objectives]
     return [

@@ -7,7 +7,7 @@ The chain: form, resistance at each condition, wake and thrust deduction, open-w
 from __future__ import annotations
 
 import time
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 
 from hpsop_core.case.case import Case
@@ -28,7 +28,7 @@ from hpsop_core.one_thread import one_blas_thread
 @one_blas_thread()
 def evaluate(
     case: Case,
-    variables: DesignVariables | None = None,
+    variables: DesignVariables | Mapping[str, object] | None = None,
     level: int = 1,
     reference: Reference | None = None,
     objectives: Sequence[Objective] = OBJECTIVES,
@@ -38,7 +38,7 @@ def evaluate(
 
     Args:
         case: what is optimised.
-        variables: the design; the initial one by default.
+        variables: the design, or what is changed of the initial one (``Case.design``); the initial one by default.
         level: 1 (Michell, lifting line) or 2 (Rankine and blade panels).
         reference: the initial design's numbers at this level; computed when it is not given.
         objectives: to be computed, the case's two among them; the declared ones by default.
@@ -54,7 +54,7 @@ def evaluate(
     """
     level_of(level)
     started = time.perf_counter()
-    design = case.initial.variables if variables is None else variables
+    design = variables if isinstance(variables, DesignVariables) else case.design(variables or {})
     try:
         basis = reference_for(case, level) if reference is None else reference
         if basis.level != level:

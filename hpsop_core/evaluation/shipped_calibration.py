@@ -58,4 +58,6 @@ def shipped(case: Case, kind: str) -> Any:
 
 def _covers(bounds: Mapping[str, Sequence[float]], case: Case) -> bool:
     own = case.bounds.as_dict()
-    return all(low <= own[name][0] and own[name][1] <= high for name, (low, high) in bounds.items())
+    return own.keys() == bounds.keys() and all(
+        low <= own[name][0] and own[name][1] <= high for name, (low, high) in bounds.items()
+    )

@@ -5,7 +5,7 @@ from __future__ import annotations
 from hpsop_core.case.case import KNOT, Case
 from hpsop_core.case.declared_variable import Variable
 from hpsop_core.case.design_numbers import ConditionResult
-from hpsop_core.case.variables import VARIABLE_TABLE
+from hpsop_core.case.variables import SEARCH_TABLE
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.quantities import HULL, OBJECTIVES, free_variables, variable_quantities
 from hpsop_core.report.csv_table import Cell, Table
@@ -34,8 +34,8 @@ def bounds_table(case: Case) -> Table:
     """Table 2: limits of the design variables, in the units that people read."""
     rows: list[tuple[Cell, ...]] = []
     for name, limits in case.bounds.as_dict().items():
-        item = VARIABLE_TABLE[name]
-        values = (*limits, getattr(case.initial.variables, name))
+        item = SEARCH_TABLE[name]
+        values = (*limits, case.bounds.values(case.initial.variables)[name])
         rows.append((f"{item.label} [{item.unit or '-'}]", *(_shown(item, value) for value in values)))
     return Table(
         "table2",
@@ -57,7 +57,7 @@ def designs_table(data: ReportData) -> Table:
     hull = [q for q in HULL if q.key in _DIMENSIONS and any(q.value(e) is not None for e in designs)]
     free = {quantity.key for quantity in free_variables(data.case)} | _PROPELLER
     # The draft is a dimension and may be a variable: once is enough.
-    variables = [q for q in variable_quantities(data.case.initial.variables) if q.key in free - {"draft"}]
+    variables = [q for q in variable_quantities(data.case) if q.key in free - {"draft"}]
     columns = [*hull, *variables, *OBJECTIVES]
     rows: list[tuple[Cell, ...]] = [
         (name, record.id, *(quantity.value(record.evaluation) for quantity in columns))

@@ -51,7 +51,7 @@ def result_quantities(case: Case) -> tuple[Quantity, ...]:
     """The rows of the result table, in their order."""
     conditions = condition_quantities(condition_names(case))
     kept = tuple(q for q in conditions if q.key.rsplit("_", 1)[0] in _IN_RESULT)
-    variables = variable_quantities(case.initial.variables)
+    variables = variable_quantities(case)
     pitch = tuple(dataclasses.replace(q, group="Propeller") for q in variables if q.key == "pitch_ratio")
     return (*OBJECTIVES, *kept, *HULL, *SHIP, *PROPELLER, *pitch, *CONSTRAINTS)
 

@@ -9,10 +9,10 @@ from hpsop_core.case.constraints import CONSTRAINTS
 from hpsop_core.case.objectives import objective_named
 from hpsop_core.case.sections import ConstantsSection
 from hpsop_core.case.ship import kilograms_per_joule
-from hpsop_core.case.variables import VARIABLE_TABLE
+from hpsop_core.case.variables import SEARCH_TABLE
 from hpsop_core.evaluation.levels import FAST, TRUTH, level_of
 from hpsop_core.markup import Markup, fill, joined, one_line, symbol_html
-from hpsop_core.quantities import number_text, variable_quantities
+from hpsop_core.quantities import number_text, variable_quantity
 from hpsop_core.report.html_page import Words, bullets, facts, table, unit_html
 
 _FORM: dict[str, Words] = {
@@ -103,12 +103,11 @@ def assumptions(case: Case) -> Markup:
 
 
 def _design_space(case: Case) -> Markup:
-    initial = case.initial.variables.as_dict()
+    initial = case.bounds.values(case.initial.variables)
     rows: list[list[Words]] = []
-    for quantity in variable_quantities(case.initial.variables):
-        lower, upper = case.bounds.as_dict()[quantity.key]
-        shown = VARIABLE_TABLE[quantity.key].shown
-        numbers = [number_text(shown(value), quantity.decimals) for value in (initial[quantity.key], lower, upper)]
+    for key, (lower, upper) in case.bounds.as_dict().items():
+        quantity, shown = variable_quantity(key, case.initial.variables), SEARCH_TABLE[key].shown
+        numbers = [number_text(shown(value), quantity.decimals) for value in (initial[key], lower, upper)]
         name = fill("{} {} {}", quantity.label, symbol_html(quantity.symbol), unit_html(quantity.unit))
         spread = numbers[1:] if lower < upper else [numbers[1], "fixed"]
         rows.append([name, numbers[0], *spread])

@@ -178,6 +178,25 @@ def test_a_what_if_slider_says_that_its_design_stands_on_a_bound() -> None:
     assert view._sliders["draft"].label == "d [m]" and "bound" not in view._sliders["draft"].hint
 
 
+def test_a_what_if_slider_moves_what_the_case_searches() -> None:
+    case = CASE.with_bounds({"block_coefficient_ratio": (0.9, 1.1)})
+    evaluation = evaluate(case)
+    assert evaluation.ok
+    session = Mock(selected=Shown("whatif", evaluation))
+    session.picture.case = case
+    view = WhatIfView(session, Mock(), Mock(add_slider=_slider))
+    fullness, length = view._sliders["displacement_ratio"], view._sliders["length_to_breadth"]
+    assert (fullness.label, fullness.value) == ("CB/CB₀", 1.0)
+    length.value, fullness.value = 1.04 * length.value, 1.02
+    moved = view._variables()
+    assert moved.displacement_ratio == pytest.approx(1.04 * 1.02)
+    assert moved.block_coefficient_ratio(case.initial.variables) == pytest.approx(1.02)
+    # another run is opened that searches the displacement: the slider is that one's again
+    session.picture.case, session.selected = CASE, Shown("whatif", evaluate(CASE, moved))
+    view._follow()
+    assert (fullness.label, fullness.value) == ("∇/∇₀ ↑", moved.displacement_ratio)
+
+
 def test_a_failed_design_stands_on_nothing() -> None:
     result = evaluate(CASE)
     assert result.ok

@@ -15,7 +15,7 @@ from explorer.views.settings_fields import CASE_FIELDS, slider_decimals
 from hpsop_core.case.case import SHIPPED_CASES, Case, load_case
 from hpsop_core.case.fields import rules
 from hpsop_core.case.sections import InitialSection
-from hpsop_core.case.variables import VARIABLE_NAMES, VARIABLE_TABLE, DesignSpace, DesignVariables
+from hpsop_core.case.variables import VARIABLE_NAMES, VARIABLE_TABLE, DesignSpace, DesignVariables, interchangeable
 from hpsop_core.quantities import free_variables, variable_quantities
 from hpsop_core.runs.records import named_variables, variables_text
 from tests.two_speeds import TWO_SPEEDS
@@ -76,14 +76,14 @@ def test_default_bounds_of_the_shipped_ship_are_its_case_s() -> None:
 
 
 def test_a_model_is_shown_with_digits() -> None:
-    by_key = {quantity.key: quantity for quantity in variable_quantities(MODEL.initial.variables)}
+    by_key = {quantity.key: quantity for quantity in variable_quantities(MODEL)}
     assert (by_key["draft"].decimals, by_key["diameter"].decimals) == (4, 4)
-    by_key = {quantity.key: quantity for quantity in variable_quantities(SHIP.initial.variables)}
+    by_key = {quantity.key: quantity for quantity in variable_quantities(SHIP)}
     assert (by_key["draft"].decimals, by_key["diameter"].decimals) == (2, 2)
 
 
 def test_quantities_are_the_table_s() -> None:
-    quantities = variable_quantities(SHIP.initial.variables)
+    quantities = variable_quantities(SHIP)
     assert [quantity.key for quantity in quantities] == list(VARIABLE_NAMES)
     for quantity, variable in zip(quantities, VARIABLE_TABLE.values(), strict=True):
         assert (quantity.label, quantity.symbol, quantity.unit) == (variable.label, variable.symbol, variable.unit)
@@ -126,6 +126,31 @@ def test_a_run_from_before_a_variable_was_declared_still_reads() -> None:
         DesignVariables.from_key([*stored, 1.0])
 
 
+def test_the_page_searches_a_stand_in_and_comes_back() -> None:
+    draft = Draft(SHIP)
+    draft.set("bounds", "displacement_ratio", (0.9, 1.0))
+    draft.search_by("block_coefficient_ratio")
+    assert draft.searched()[6] == "block_coefficient_ratio" and "displacement_ratio" not in draft.searched()
+    draft.widen("block_coefficient_ratio", "upper")
+    draft.set_bound("block_coefficient_ratio", "lower", 0.9)
+    case = draft.case()
+    assert case.bounds.as_dict()["block_coefficient_ratio"] == pytest.approx((0.9, 1.075))
+    assert [quantity.key for quantity in free_variables(case)][-1] == "block_coefficient_ratio"
+    assert [quantity.key for quantity in variable_quantities(case)] == [*case.bounds.names, "displacement_ratio"]
+    # a server that starts again, and a run whose case descends from a preset that searches the other one
+    began = Draft(SHIP)
+    began.restore(draft.saved())
+    assert began.case() == case
+    preset = load_case("dtc-p4119")
+    (own,) = set(interchangeable("displacement_ratio")) & set(preset.bounds.names)
+    (other,) = set(interchangeable("displacement_ratio")) - {own}
+    descended = preset.with_bounds({other: (0.9, 1.1)})
+    draft.begin(descended)
+    assert draft.base == preset and draft.case() == descended
+    draft.search_by(own)
+    assert draft.case() == draft.base and not draft.count()
+
+
 def test_no_second_declaration_stands_anywhere() -> None:
     """A list or a table that names many variables is a copy that the next variable would be missing from."""
     for path in sorted([*ROOT.glob("hpsop_core/**/*.py"), *ROOT.glob("explorer/**/*.py")]):
@@ -146,6 +171,9 @@ def test_the_page_sets_usual_bounds_around_a_changed_initial_design() -> None:
     # freed by this case, though cases usually fix it: as far as its slider goes
     assert case.bounds.as_dict()["expanded_area_ratio"] == (0.35, 1.1)
     assert case.bounds.as_dict()["buoyancy_centre_shift"] == (0.0, 0.0)
+    draft.search_by("block_coefficient_ratio")
+    draft.search_around_initial()
+    assert draft.case().bounds.as_dict()["block_coefficient_ratio"] == (0.95, 1.05)
     # while the fields make no design, the preset's counts
     draft.set("initial", "draft", 40.0)
     assert draft.initial() == draft.base.initial.variables
