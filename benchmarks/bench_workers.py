@@ -1,23 +1,25 @@
-"""How a run grows with its Dask workers, whatever cores this machine has: evaluations that sleep.
+"""How a run grows with its workers, whatever cores this machine has: evaluations that sleep.
 
-    python benchmarks/bench_workers.py [--seconds 0.15] [--generations 4] [--workers 1 2 4]
+    python benchmarks/bench_workers.py [--seconds 0.15] [--generations 4] [--workers 1 2 4] [--local]
 
-An evaluation sleeps as long as one of level 2 computes and returns a real design's whole result, so that all that keeps
-workers idle is the run itself: a generation's last evaluations, sending, storing, the search. Then what a design costs
-the wire and the driving process, from which larger clusters follow on paper: with w workers a generation of p designs
-takes ceil(p / w) evaluations one after the other, and the driving process p times its own share.
+Dask workers, or with --local processes of the run's own: 0.012 s is an evaluation of level 1. The level changes half
+way. An evaluation sleeps as long as a real one computes and returns a real design's whole result, so that all that
+keeps workers idle is the run itself: a generation's last evaluations, sending, storing, the search. Then what a design
+costs the wire and the driving process, from which larger clusters follow on paper: with w workers a generation of p
+designs takes ceil(p / w) evaluations one after the other, and the driving process p times its own share.
 """
 
 from __future__ import annotations
 
 import argparse
+import contextlib
 import dataclasses
-import math
 import pickle
 import tempfile
 import time
 from functools import partial
 from pathlib import Path
+from typing import Any
 
 from distributed import LocalCluster
 
@@ -51,19 +53,25 @@ def unread(data: object) -> None:
     """No reference comes back either."""
 
 
-def generation_seconds(case: Case, physics: Physics, workers: int, generations: int) -> float:
-    """Wall time of a generation, without the first, which starts the workers."""
-    with (
-        LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None, processes=True) as cluster,
-        tempfile.TemporaryDirectory() as folder,
-    ):
-        address = cluster.scheduler_address.removeprefix("tcp://")
+def busy_share(case: Case, physics: Physics, workers: int, generations: int, seconds: float, local: bool) -> float:
+    """Evaluations over what the workers had time for, without the first generation, which starts them.
+
+    Time is the wall's from the first to the last result, so that what passes between two generations counts.
+    """
+    with contextlib.ExitStack() as stack:
+        folder = stack.enter_context(tempfile.TemporaryDirectory())
+        place: dict[str, Any] = {"workers": workers}
+        if not local:
+            cluster = LocalCluster(n_workers=workers, threads_per_worker=1, dashboard_address=None, processes=True)
+            stack.enter_context(cluster)
+            place = {"executor": f"dask:{cluster.scheduler_address.removeprefix('tcp://')}"}
         run = optimize(
-            case, Path(folder) / "slept.hpsop", generations=generations, level1_generations=generations,
-            executor=f"dask:{address}", physics=physics,
+            case, Path(folder) / "slept.hpsop", generations=generations, level1_generations=generations // 2,
+            physics=physics, **place,
         )  # fmt: skip
-        times = [record.elapsed for record in run.generation_records(after=1)]
-    return sum(times) / len(times)
+        first, *others = run.generation_records()
+        evaluated = sum(point.generation > 1 for point in run.archive())
+    return evaluated * seconds / workers / (others[-1].finished_at - first.finished_at)
 
 
 def main() -> None:
@@ -72,6 +80,7 @@ def main() -> None:
     parser.add_argument("--seconds", type=float, default=0.15)
     parser.add_argument("--generations", type=int, default=4)
     parser.add_argument("--workers", type=int, nargs="+", default=[1, 2, 4])
+    parser.add_argument("--local", action="store_true")
     asked = parser.parse_args()
     case = load_case("dtc-p4119").replaced("optimization", surface=False, final_errors=False, population=POPULATION)
     template = evaluate(case)
@@ -79,9 +88,8 @@ def main() -> None:
     physics = Physics(partial(slept, template, asked.seconds), no_reference, unread)
     print(f"evaluations of {asked.seconds:g} s, {POPULATION} a generation")
     for workers in asked.workers:
-        found = generation_seconds(case, physics, workers, asked.generations)
-        ideal = math.ceil(POPULATION / workers) * asked.seconds
-        print(f"{workers:3d} workers: {found:7.2f} s a generation, {100.0 * ideal / found:5.1f} % of it evaluations")
+        share = busy_share(case, physics, workers, asked.generations, asked.seconds, asked.local)
+        print(f"{workers:3d} workers: {100.0 * share:5.1f} % of their time evaluations")
     reference = reference_for(case, 2)
     parcel = parcel_of(evaluate, case, reference)
     task = pickle.dumps((parcel_task, parcel.label, case.initial.variables, 2))
