@@ -15,6 +15,7 @@ from collections.abc import Callable, Mapping, Sequence
 from pathlib import Path
 
 import numpy as np
+from numpy.typing import NDArray
 
 from explorer.state.run_picture import (
     ACTIVE,
@@ -53,6 +54,7 @@ _STATES = {
     "interrupted": STOPPED,
 }
 _POLL_SECONDS = 0.7
+_LARGE = 1000  # designs from which a run's first picture is one of points alone
 _openings = itertools.count(1)
 
 
@@ -350,7 +352,15 @@ class RunKeeper:
         if reader is None:
             return RunPicture(self.path.name, case, status, message, driven, opening=self.opening)
         finished = reader.generations()
-        self._read_new(reader)
+        if self._picture is None and reader.sealed and reader.progress()[1] > _LARGE:
+            ids, rows = self._points_alone(reader)
+            columns: tuple[str, ...] = ()
+            table = np.zeros((len(ids), 0))
+            self._on_news()
+        else:
+            self._read_new(reader)
+            ids, rows, table = self._ids, self._rows, self._table
+            columns = tuple(quantity.key for quantity in self._quantities)
         for item in finished[len(self._fronts.fronts) :]:
             self._fronts.add(item)
         fronts = self._fronts.fronts
@@ -370,21 +380,21 @@ class RunKeeper:
             status=status,
             message=message,
             live=driven,
-            ids=self._ids,
-            level=self._rows[:, 0].astype(np.int64),
-            generation=self._rows[:, 1].astype(np.int64),
-            objectives=self._rows[:, 2:4],
-            feasible=self._rows[:, 4] > 0.5,
-            failed=self._rows[:, 5] > 0.5,
-            by_hand=self._rows[:, 6] > 0.5,
-            table=self._table,
-            columns=tuple(quantity.key for quantity in self._quantities),
+            ids=ids,
+            level=rows[:, 0].astype(np.int64),
+            generation=rows[:, 1].astype(np.int64),
+            objectives=rows[:, 2:4],
+            feasible=rows[:, 4] > 0.5,
+            failed=rows[:, 5] > 0.5,
+            by_hand=rows[:, 6] > 0.5,
+            table=table,
+            columns=columns,
             generations=generations,
             compromise=newest.compromise if newest is not None else None,
             knee=newest.knee if newest is not None else None,
             seconds_left=snapshot.seconds_left if snapshot is not None else None,
             elapsed=elapsed,
-            predicted=self._rows[:, 7] > 0.5,
+            predicted=rows[:, 7] > 0.5,
             opening=self.opening,
             comparison=self._comparison(reader, generations),
         )
@@ -398,23 +408,21 @@ class RunKeeper:
         known = {record.id: record.evaluation.comparison_errors for record in reader.designs(generations[-1].front)}
         return {number: widths for number, widths in known.items() if widths}
 
+    def _points_alone(self, reader: RunReader) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
+        """Ids and rows of a large run's first picture: where each design stands, without its other numbers.
+
+        Those of thousands of designs take a second; they come with the next picture, soon. A damaged record is found
+        here already: each has its checksum.
+        """
+        points = [*reader.archive(), *reader.archive(by_hand=True)]
+        self._points.update((point.id, point) for point in points)
+        return np.array([point.id for point in points], dtype=np.int64), np.array([_row(point) for point in points])
+
     def _read_new(self, reader: RunReader) -> None:
         numbers, rows, table = [], [], []
         for point, evaluation in reader.news(self._complete_until(reader), self._known):
             numbers.append(point.id)
-            f1, f2 = point.objectives if point.objectives is not None else (np.nan, np.nan)
-            rows.append(
-                [
-                    point.level,
-                    point.generation,
-                    f1,
-                    f2,
-                    point.feasible,
-                    point.objectives is None,
-                    point.origin == "hand",
-                    point.predicted,
-                ]
-            )
+            rows.append(_row(point))
             values = (quantity.value(evaluation) for quantity in self._quantities)
             table.append(np.array([np.nan if value is None else value for value in values], dtype=float))
             self._points[point.id] = point
@@ -431,7 +439,7 @@ class RunKeeper:
 
     def _complete_until(self, reader: RunReader) -> int:
         """Ids up to here have all been read: those of finished generations that were pictured before."""
-        if self._picture is None or not self._picture.generations:
+        if self._picture is None or not self._known or not self._picture.generations:
             return 0
         finished = self._picture.generations[-1].number
         asked = reader.generation(finished)
@@ -456,6 +464,12 @@ class RunKeeper:
             # it is this program that holds the file: the run begins or has just ended, and nobody else drives it
             return STOPPED, reason
         return _STATES.get(state, state), reason or self._shape
+
+
+def _row(point: ArchivePoint) -> list[float]:
+    f1, f2 = point.objectives if point.objectives is not None else (np.nan, np.nan)
+    flags = (point.feasible, point.objectives is None, point.origin == "hand", point.predicted)
+    return [point.level, point.generation, f1, f2, *map(float, flags)]
 
 
 def _identity(path: Path) -> tuple[int, int] | None:

@@ -32,6 +32,11 @@ class RunContent:
         self._version = version
         self._sealed = version >= CHECKSUMS_SINCE
 
+    @property
+    def sealed(self) -> bool:
+        """Whether each record has a checksum: what was read of one is then what was written."""
+        return self._sealed
+
     def values(self) -> dict[str, str]:
         """The table ``run``.
 

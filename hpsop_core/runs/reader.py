@@ -56,6 +56,7 @@ class RunReader:
     Attributes:
         case: the run's exact case; its own hull and propeller files stand in the run, and it names them where they
             have been written out on this machine.
+        sealed: whether each record has a checksum, as in all but files of earlier versions.
         files: of the own hull and propeller; empty for shipped ones, and in files of earlier versions.
 
     Raises:
@@ -76,6 +77,7 @@ class RunReader:
         self._errors_of: tuple[int, int] | None = None
         with self._reading() as content:
             self._values = content.values()
+            self.sealed = content.sealed
             self.files: tuple[ShipFile, ...] = content.files()
             self.case: Case = with_files(case_from_toml(self._values["case"], str(self.path)), self.files)
 

@@ -9,6 +9,7 @@ import tempfile
 from collections.abc import Iterator
 from pathlib import Path
 
+import numpy as np
 import pytest
 import quick_physics
 from quick_physics import physics
@@ -43,6 +44,26 @@ def keeper(tmp_path: Path, finished: Path) -> Iterator[RunKeeper]:
     assert kept.picture().status == FINISHED
     yield kept
     kept.close()
+
+
+def test_the_first_picture_of_a_large_run_has_its_points_and_the_next_one_all_numbers(
+    keeper: RunKeeper, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole, told = keeper.picture(), []
+    monkeypatch.setattr("explorer.services.run_keeper._LARGE", 5)
+    large = RunKeeper(keeper.path, lambda: told.append(1))
+    try:
+        first, news = large.picture(), len(told)
+        assert news, "the page must hear that there is more"
+        assert first.columns == () and first.column("length") is None
+        second = large.picture()
+    finally:
+        large.close()
+    assert second.columns == whole.columns and np.array_equal(second.table, whole.table, equal_nan=True)
+    for picture in (first, second):
+        assert picture.generations == whole.generations and picture.compromise == whole.compromise
+        for name in ("ids", "level", "generation", "objectives", "feasible", "failed", "by_hand", "predicted"):
+            assert np.array_equal(getattr(picture, name), getattr(whole, name), equal_nan=name == "objectives"), name
 
 
 def test_who_watches_from_the_beginning_knows_what_a_late_comer_knows(tmp_path: Path) -> None:
