@@ -15,6 +15,7 @@ import math
 import time
 from collections.abc import Iterable, Mapping
 from dataclasses import replace
+from functools import lru_cache
 
 from hpsop_core.case.case import Case
 from hpsop_core.case.constraints import CONSTRAINTS
@@ -24,7 +25,7 @@ from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation.evaluate import assessed, evaluate
 from hpsop_core.evaluation.input_widths import form_factor_width, wake_fraction_width
 from hpsop_core.evaluation.levels import BLADE_REFINEMENT, REFINEMENT, TRUTH
-from hpsop_core.evaluation.physics import Trial, compute_trial
+from hpsop_core.evaluation.physics import Basis, Physics, Trial, compute_trial
 from hpsop_core.evaluation.reference import Reference, initial_numbers, reference_for
 from hpsop_core.evaluation.result import Evaluation, Failed, Ok
 from hpsop_core.one_thread import one_blas_thread
@@ -151,13 +152,19 @@ def _input_trials(case: Case) -> Mapping[str, tuple[Trial, ...]]:
 
 def _tried(case: Case, variables: DesignVariables, basis: Reference, trial: Trial) -> tuple[Ok, Ok]:
     """The design and the initial design with something done differently to both."""
-    first = compute_trial(case, case.initial.variables, basis.basis, trial)
+    first = _initial_tried(case, basis.basis, trial)
     reference = replace(basis, initial=initial_numbers(basis.basis.displaced_volume, first.numbers))
     own = first if variables == case.initial.variables else compute_trial(case, variables, basis.basis, trial)
     return (
         assessed(case, own, reference, OBJECTIVES, CONSTRAINTS),
         assessed(case, first, reference, OBJECTIVES, CONSTRAINTS),
     )
+
+
+@lru_cache(maxsize=16)
+def _initial_tried(case: Case, basis: Basis, trial: Trial) -> Physics:
+    """The initial design's physics, which every design of a case is held against; a case has seven trials."""
+    return compute_trial(case, case.initial.variables, basis, trial)
 
 
 class _Change:

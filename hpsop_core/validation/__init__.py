@@ -4,7 +4,7 @@
 * comparison: a curve of such lines
 * published_hulls, published_propellers: ships and propellers of others, as they were measured
 * hull, resistance, powering, rankine, propeller_level1, propeller_level2: the lines of a discipline
-* rankine_studies, propeller_studies: sweeps that validation, pictures and docs share
+* rankine_studies, propeller_studies: sweeps that validation, pictures and docs share; miss_studies: why points miss
 """
 
 from __future__ import annotations

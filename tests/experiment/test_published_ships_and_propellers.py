@@ -10,7 +10,7 @@ import numpy as np
 import pytest
 
 from hpsop_core.cli.main import main
-from hpsop_core.validation import published_hulls, published_propellers
+from hpsop_core.validation import miss_studies, published_hulls, published_propellers
 from hpsop_core.validation.check import FITTED, HELD_OUT, LABELS, SELF_CONSISTENCY, Check, labelled
 from hpsop_core.validation.comparison import Comparison
 from hpsop_core.version import __version__
@@ -110,3 +110,12 @@ def test_the_command_labels_its_lines_and_hides_no_miss(
     monkeypatch.setattr("hpsop_core.validation.all_checks", lambda: iter([good]))
     assert main(["validate"]) == 0
     assert "pass  [fitted] g: kept" in capsys.readouterr().out
+
+
+def test_series_60_floats_deeper_by_what_its_waterplane_carries() -> None:
+    fixed, sunk = (miss_studies._series_60(sinkage) for sinkage in (0.0, 0.2))
+    before, after = fixed.hydrostatics, sunk.hydrostatics
+    # Todd's CB 0.600 and CW 0.706; the waterplane grows a little over 0.2 m.
+    assert before.displaced_volume == pytest.approx(0.6 * 121.92 * 16.256 * 6.5024, rel=0.01)
+    gained = after.displaced_volume - before.displaced_volume
+    assert gained == pytest.approx(0.2 * 0.706 * 121.92 * 16.256, rel=0.03)
