@@ -11,7 +11,7 @@ import dataclasses
 import itertools
 import os
 import threading
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -364,9 +364,10 @@ class RunKeeper:
         for item in finished[len(self._fronts.fronts) :]:
             self._fronts.add(item)
         fronts = self._fronts.fronts
-        generations = tuple(
+        known = self._picture.generations if self._picture is not None else ()
+        generations = known + tuple(
             GenerationPicture(item.number, item.level, item.members, front.ids, front.hypervolume)
-            for item, front in zip(finished, fronts, strict=True)
+            for item, front in zip(finished[len(known) :], fronts[len(known) :], strict=True)
         )
         newest = fronts[-1] if fronts else None
         snapshot = self._event.snapshot if self._event is not None else None
@@ -396,17 +397,9 @@ class RunKeeper:
             elapsed=elapsed,
             predicted=rows[:, 7] > 0.5,
             opening=self.opening,
-            comparison=self._comparison(reader, generations),
+            comparison=reader.comparison_errors(generations[-1].front) if generations else {},
         )
         return self._picture
-
-    def _comparison(
-        self, reader: RunReader, generations: Sequence[GenerationPicture]
-    ) -> Mapping[int, Mapping[str, float]]:
-        if not generations:
-            return {}
-        known = {record.id: record.evaluation.comparison_errors for record in reader.designs(generations[-1].front)}
-        return {number: widths for number, widths in known.items() if widths}
 
     def _points_alone(self, reader: RunReader) -> tuple[NDArray[np.int64], NDArray[np.float64]]:
         """Ids and rows of a large run's first picture: where each design stands, without its other numbers.

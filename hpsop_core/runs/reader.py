@@ -309,6 +309,12 @@ class RunReader:
         errors = self._errors(fresh=bool(missing))
         return tuple(_refined(self._designs[number], errors.get(str(number))) for number in ids)
 
+    def comparison_errors(self, ids: Sequence[int]) -> dict[int, Mapping[str, float]]:
+        """The errors in a comparison of those designs that were solved finer, by id; nothing else of them is read."""
+        errors = self._errors(fresh=False)
+        found = {number: errors.get(str(number), {}).get("comparison_errors", {}) for number in ids}
+        return {number: widths for number, widths in found.items() if widths}
+
     def _errors(self, fresh: bool) -> dict[str, dict[str, Any]]:
         """The error fields by the design's id, of designs that were solved finer.
 

@@ -51,3 +51,10 @@ def test_its_designs_come_out_the_same_today(run: RunReader, design: str | int) 
     # Constraints that came later are not asked by this case.
     assert {name: today.constraints[name] for name in stored.constraints} == pytest.approx(stored.constraints, abs=1e-9)
     assert {today.constraints[name] for name in today.constraints if name not in stored.constraints} <= {None}
+
+
+def test_the_errors_of_its_front_are_known_without_reading_the_designs(run: RunReader) -> None:
+    front = run.front()
+    own = {record.id: record.evaluation.comparison_errors for record in front}
+    assert all(own.values()) and run.comparison_errors(tuple(own)) == own
+    assert run.comparison_errors((1,)) == {}
