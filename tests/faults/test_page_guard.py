@@ -15,6 +15,7 @@ from page_client import Hostile
 from explorer.app import Explorer
 from explorer.server.guard import check_update
 from explorer.server.security import free_port
+from explorer.state.draft import Draft
 from hpsop_core.errors import InputError
 from tests.two_speeds import stated_case
 
@@ -141,6 +142,21 @@ def test_a_typed_number_out_of_range_is_refused_when_the_typing_rests(explorer: 
     draft.reset_all()
 
 
+def test_a_stand_in_takes_a_slider_over(explorer: Explorer) -> None:
+    settings, state = explorer.settings, explorer.state
+    slider, readout = (found["displacement_ratio"] for found in (settings._sliders, settings._readouts))
+    state.change_draft(lambda draft: draft.search_by("block_coefficient_ratio"), whole=True)
+    assert state.worker.wait_until_idle(30.0)
+    assert (slider.label, slider.value) == ("CB/CB₀", (0.95, 1.05))
+    words = str(readout._content)
+    assert 'data-variable="block_coefficient_ratio"' in words and "search ∇/∇₀ instead" in words
+    settings.set_bounds("block_coefficient_ratio", (0.92, 1.04))
+    assert state.draft.case().bounds.as_dict()["block_coefficient_ratio"] == (0.92, 1.04)
+    state.change_draft(Draft.reset_all, whole=True)
+    assert state.worker.wait_until_idle(30.0)
+    assert (slider.label, slider.value) == ("∇/∇₀", state.draft.value("bounds", "displacement_ratio"))
+
+
 def test_no_attribute_but_the_value_can_be_changed(explorer: Explorer, hostile: Hostile) -> None:
     slider = explorer.settings._sliders["draft"]
     limits, callbacks = (slider.min, slider.max), list(slider._impl.update_cb)
@@ -167,6 +183,8 @@ def test_nonsense_on_the_hidden_channel_changes_nothing(explorer: Explorer, host
         {"t": "act", "name": "open_run", "arg": "../../etc/passwd"},
         {"t": "act", "name": "delete_yes", "arg": "../../etc/passwd"},
         {"t": "act", "name": "run_extend", "arg": "-5"},
+        {"t": "act", "name": "search_by", "arg": "draft"},
+        {"t": "act", "name": "widen", "arg": "block_coefficient_ratio.upper"},
         {"t": "act", "name": "tab", "arg": "<script>"},
         {"t": "act", "name": "camera", "arg": "nowhere"},
         {"t": "act", "name": "show_pin", "arg": "99"},
