@@ -10,11 +10,11 @@ from numpy.typing import NDArray
 from PIL import Image
 
 # the sea's colour on the light and on the dark page
-_WATER = {False: (52, 122, 164), True: (14, 44, 66)}
+_WATER = {False: (52, 122, 164), True: (26, 74, 108)}
 _OPACITY = 0.46
 _TEXELS = 384
 # ripples: lengths over the sheet's half width, the wind's direction, and how much of the light they take
-_RIPPLES, _WIND, _CONTRAST = (0.028, 0.12), 0.7, {False: 34.0, True: 16.0}
+_RIPPLES, _WIND, _CONTRAST = (0.028, 0.12), 0.7, {False: 34.0, True: 22.0}
 _SHADES = 16
 # The sky's colours from nadir over horizon to zenith, by the sine of the height; under the horizon lies more sea than
 # is drawn. viser's tone mapping turns grey what is brighter than these.

@@ -169,7 +169,8 @@ class SceneView:
         nodes.frame("/ship/propeller", geometry.propeller_position)
         nodes.mesh("/ship/propeller/blades", *geometry.blades, color=BRONZE, visible=not options.pressure)
         nodes.mesh("/ship/propeller/hub", *geometry.hub, color=HUB)
-        calm = options.water and not close_up and not options.waves
+        # a sheet of water would tint the colours of pressures under it
+        calm = options.water and not (close_up or options.waves or options.pressure)
         self._water(geometry, calm)
         nodes.mesh("/shadow", *geometry.shadow, color=SHADOW, opacity=_SHADOW_OPACITY, visible=calm and above)
         if ghost is not None:
