@@ -284,7 +284,7 @@ class ConstantsSection:
         "model",
         ("model", "reynolds"),
         "camber that the blades' boundary layer takes at full scale: as much as on the model that it was fitted on, or "
-        "less, in proportion to the friction",
+        "in proportion to the friction",
     )
     wave_calibration: str = choice(
         "level2",

@@ -37,6 +37,10 @@ _CALIBRATION = {
     "case",
     "none": "used as Michell's integral gives it, which on a flat stern like the DTC's is several times too high",
 }
+_CAMBER = {
+    "model": "as much at full scale as on the model that it was fitted on",
+    "reynolds": "scaled from the model that it was fitted on in proportion to the friction",
+}
 
 
 def objective_lines(case: Case) -> list[Markup]:
@@ -160,6 +164,7 @@ def _constants(case: Case) -> Markup:
             ("sea margin", f"{number_text(100.0 * c.sea_margin, 1)} % on the brake power"),
             ("shaft efficiency", number_text(c.shaft_efficiency, 3)),
             ("blade roughness", f"{number_text(1e6 * c.propeller_roughness, 0)} µm"),
+            ("camber lost on the blades", _CAMBER[c.camber_scaling]),
             *_ship(case),
             ("not included", ", ".join([*left_out, "added resistance in waves and wind", "shallow water"])),
         ]

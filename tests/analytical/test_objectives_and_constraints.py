@@ -127,6 +127,12 @@ def test_every_declaration_is_chosen_shown_and_explained(other: Evaluation) -> N
         assert f"| {constraint.name} |" in reference and constraint.meaning in reference
 
 
+def test_the_report_says_what_scale_the_lost_camber_is_of() -> None:
+    scaled = CASE.replaced("constants", camber_scaling="reynolds")
+    words = "in proportion to the friction"
+    assert words in html.unescape(assumptions(scaled)) and words not in html.unescape(assumptions(CASE))
+
+
 def test_what_is_violated_is_said_with_its_amount(other: Evaluation) -> None:
     assert other.ok
     broken = dataclasses.replace(other, constraints={**dict.fromkeys(other.constraints), "propeller_clearance": 0.25})
