@@ -2,9 +2,9 @@
 
 Patches share their edges but were fitted one by one, so that they meet under an angle where the ship has no edge. Here
 the strip of the smaller patch next to such a seam is turned into the larger one's tangent plane: knots are inserted
-beside the seam, and the row of control points next to it is moved, as little as the tangent plane allows. What the
-solvers see is untouched. Where a seam runs out into the centreplane, as at the corners of an aperture, the ship ends in
-an edge and the angle stays.
+beside the seam, and the row of control points next to it is moved, as little as the tangent plane allows. Across the
+design waterline the strip is the topsides'. What the solvers see is untouched. Where a seam runs out into the
+centreplane, as at the corners of an aperture, the ship ends in an edge and the angle stays.
 """
 
 from __future__ import annotations
@@ -16,12 +16,14 @@ import numpy as np
 
 from hpsop_core.geometry.hull.hull import ParentHull
 from hpsop_core.geometry.nurbs import NurbsSurface, basis_matrix
-from hpsop_core.typing_aliases import Array
+from hpsop_core.typing_aliases import Array, IntArray
 
 # Widths of the strip beside a seam in parts of the patch, tried in turn: what moves is in proportion to them.
 _WIDTHS = (0.01, 0.005, 0.0025)
-# Every span across is parted, so that the strip can follow its neighbour's tangent.
+# Every span across is parted, so that the strip can follow its neighbour's tangent; the first and the last in twelfths
+# up to their middle, where a seam may come out of an edge of the ship within a few decimetres.
 _PARTS_ACROSS = 3
+_PARTS_AT_ENDS = np.array([1.0, 2.0, 3.0, 5.0, 6.0]) / 12.0
 # Half-breadths in parts of the breadth: below the first a seam's end is an edge of the ship, above the second none.
 _EDGE = 8e-4, 16e-4
 # What a movement along the edge counts beside an angle across it: enough to leave points where they are.
@@ -31,7 +33,7 @@ _FURTHEST = 5e-5
 
 
 def faired_seams(parent: ParentHull, surfaces: Mapping[str, NurbsSurface]) -> tuple[dict[str, NurbsSurface], float]:
-    """The surfaces of a hull with common tangent planes along the seams of its underwater patches.
+    """The surfaces of a hull with common tangent planes along the seams of its underwater patches and its waterline.
 
     Args:
         parent: which patches meet where.
@@ -62,7 +64,8 @@ def faired_seams(parent: ParentHull, surfaces: Mapping[str, NurbsSurface]) -> tu
             result[name] = found
             moved = max(moved, off)
             break
-    return result, moved
+    topsides, off = _over_the_waterline(parent, result, length, breadth)
+    return {**result, **topsides}, max(moved, off)
 
 
 def _beside(width: float, aft: bool) -> Array:
@@ -80,13 +83,20 @@ def _meets_with_its_last_row(patch: NurbsSurface, other: NurbsSurface, length: f
     return False if abs(mine[0] - its[1]) < near else None
 
 
+def _across(knots: Array) -> Array:
+    """Knots to be inserted across a patch."""
+    breaks = np.unique(knots)
+    spans = np.diff(breaks)
+    shares = np.arange(1, _PARTS_ACROSS) / _PARTS_ACROSS
+    inner = (breaks[:-1, None] + spans[:, None] * shares).ravel()
+    return np.concatenate([breaks[0] + spans[0] * _PARTS_AT_ENDS, inner, breaks[-1] - spans[-1] * _PARTS_AT_ENDS])
+
+
 def _turned(
     patch: NurbsSurface, other: NurbsSurface, part: tuple[float, float], knots: Array, breadth: float
 ) -> NurbsSurface:
     aft = bool(knots[0] > 0.5)
-    breaks = np.unique(patch.knots_v)
-    shares = np.arange(1, _PARTS_ACROSS) / _PARTS_ACROSS
-    finer = (breaks[:-1, None] + np.diff(breaks)[:, None] * shares).ravel()
+    finer = _across(patch.knots_v)
     patch = patch.with_knots_u(knots).transposed().with_knots_u(finer).transposed()
     net = patch.control_points.copy()
     edge, row, its_edge, its_row = (-1, -2, 0, 1) if aft else (0, 1, -1, -2)
@@ -101,19 +111,91 @@ def _turned(
     _, _, along = patch.derivatives(np.array([1.0 if aft else 0.0]), v)
     tangent = along[0, :, 1:] / np.maximum(np.linalg.norm(along[0, :, 1:], axis=1, keepdims=True), 1e-12)
     normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
-    low, high = _EDGE[0] * breadth, _EDGE[1] * breadth
-    share = np.clip(((basis @ net[edge])[:, 1] - low) / (high - low), 0.0, 1.0)
-    across = share**2 * (3.0 - 2.0 * share) * np.sum(gap * normal, axis=1)
+    across = _no_edge(basis @ net[edge], breadth) * np.sum(gap * normal, axis=1)
     # Free are y where it is not in the centreplane, and z but for the ends, which other patches share.
     free_y, free_z = np.flatnonzero(net[row, :, 1] != 0.0), np.arange(1, net.shape[1] - 1)
+    net[row] = _least_moved(net[row], basis, normal, tangent, across, free_y, free_z)
+    return replace(patch, control_points=net)
+
+
+def _no_edge(seam: Array, breadth: float) -> Array:
+    """How far the ship is smooth at points (n, 3) of a seam: 0 where it ends in an edge to 1."""
+    low, high = _EDGE[0] * breadth, _EDGE[1] * breadth
+    share = np.clip((seam[:, 1] - low) / (high - low), 0.0, 1.0)
+    return np.asarray(share**2 * (3.0 - 2.0 * share))
+
+
+def _least_moved(
+    row: Array, basis: Array, normal: Array, tangent: Array, across: Array, free_y: IntArray, free_z: IntArray
+) -> Array:
+    """A row of control points (n, 3) moved so that its curve goes by ``across`` (m,) along ``normal`` (m, 2).
+
+    Little along ``tangent``; y stays on its side of the centreplane.
+    """
     columns = np.concatenate([basis[:, free_y], basis[:, free_z]], axis=1)
     counts = (len(free_y), len(free_z))
     equations = np.concatenate(
         [columns * np.repeat(normal, counts, axis=1), _REST * columns * np.repeat(tangent, counts, axis=1)]
     )
-    solution = np.linalg.lstsq(equations, np.concatenate([across, np.zeros(len(v))]), rcond=None)[0]
-    net[row, free_y, 1] = np.maximum(net[row, free_y, 1] + solution[: counts[0]], 0.0)
-    net[row, free_z, 2] += solution[counts[0] :]
+    solution = np.linalg.lstsq(equations, np.concatenate([across, np.zeros(len(across))]), rcond=None)[0]
+    moved = row.copy()
+    moved[free_y, 1] = np.maximum(moved[free_y, 1] + solution[: counts[0]], 0.0)
+    moved[free_z, 2] += solution[counts[0] :]
+    return moved
+
+
+def _over_the_waterline(
+    parent: ParentHull, surfaces: Mapping[str, NurbsSurface], length: float, breadth: float
+) -> tuple[dict[str, NurbsSurface], float]:
+    """Patches above the waterline, turned into the tangent planes of those below, and how far they moved at most, m."""
+    joints = {}
+    for name, (other, _, _) in parent.girth.items():
+        if name == other or not {name, other} <= set(parent.along):
+            continue
+        aft = _meets_with_its_last_row(surfaces[name], surfaces[other], length)
+        if aft is not None and np.array_equal(surfaces[name].knots_v, surfaces[other].knots_v):
+            joints[name] = (other, -1 if aft else 0, 0 if aft else -1)
+    # Where two of them meet both turn, and a flat end follows its rim; other ends are shared with patches that stay.
+    free = {(name, end) for name, (_, end, _) in joints.items()} | {(other, end) for other, _, end in joints.values()}
+    free |= {(name, 0 if end == "first" else -1) for name, end in parent.caps}
+    for width in _WIDTHS:
+        knots = _beside(width, False)
+        found = {
+            above: _risen(
+                surfaces[above], surfaces[below], knots, [end for name, end in free if name == above], breadth
+            )
+            for above, below in parent.along.items()
+        }
+        for name, (other, end, its_end) in joints.items():
+            net = found[name].control_points.copy()
+            net[end, 1] = found[other].control_points[its_end, 1]
+            found[name] = replace(found[name], control_points=net)
+        off = max(
+            (_distance(found[name].transposed(), surfaces[name].transposed(), knots) for name in found), default=0.0
+        )
+        if off <= _FURTHEST * length:
+            return found, off
+    return {}, 0.0
+
+
+def _risen(
+    patch: NurbsSurface, below: NurbsSurface, knots: Array, free_ends: list[int], breadth: float
+) -> NurbsSurface:
+    patch = patch.transposed().with_knots_u(knots).transposed()
+    net = patch.control_points.copy()
+    u = np.linspace(0.0, 1.0, 12 * len(np.unique(patch.knots_u)))
+    basis = basis_matrix(patch.knots_u, patch.degree_u, u)
+    _, _, rising = below.derivatives(u, np.array([1.0]))
+    tangent = rising[:, 0, 1:] / np.maximum(np.linalg.norm(rising[:, 0, 1:], axis=1, keepdims=True), 1e-12)
+    normal = np.stack([-tangent[:, 1], tangent[:, 0]], axis=1)
+    gap = np.sum(basis @ (net[:, 1] - net[:, 0])[:, 1:] * normal, axis=1)
+    inner = np.ones(len(net), dtype=np.bool_)
+    inner[[0, -1]] = False
+    inner[free_ends] = True
+    free_y, free_z = np.flatnonzero(inner & (net[:, 1, 1] != 0.0)), np.flatnonzero(inner)
+    net[:, 1] = _least_moved(
+        net[:, 1], basis, normal, tangent, -_no_edge(basis @ net[:, 0], breadth) * gap, free_y, free_z
+    )
     return replace(patch, control_points=net)
 
 

@@ -3,12 +3,13 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 from typing import Any
 
 import numpy as np
 import pytest
 
-from hpsop_core import to_geomdl
+from hpsop_core import load_hull, to_geomdl
 from hpsop_core.export.fairing import faired_seams
 from hpsop_core.geometry.hull.hull import Hull, load_parent_hull
 from hpsop_core.geometry.hull.hydrostatics import integrate_parent
@@ -18,10 +19,13 @@ from hpsop_core.typing_aliases import Array
 # Patches that meet a larger one, and whether they lie aft of it.
 SEAMS = {"counter": True, "skeg": True, "bulb": False}
 PLACES = np.linspace(0.0, 1.0, 61)
+KVLCC2 = Path(__file__).parents[1] / "data" / "hulls" / "kvlcc2.csv"
 
 
-@pytest.fixture(scope="module", params=["parent", "shifted"])
+@pytest.fixture(scope="module", params=["parent", "shifted", "kvlcc2"])
 def hull(request: pytest.FixtureRequest) -> Hull:
+    if request.param == "kvlcc2":
+        return load_hull(KVLCC2, length=320.0, draft=20.8)
     parent = load_parent_hull()
     if request.param == "parent":
         return parent.transform(parent.length, parent.breadth, parent.draft)
@@ -57,18 +61,41 @@ def test_seams_under_water_have_one_tangent_plane(hull: Hull, name: str) -> None
     assert np.max(seam(before, hull, name)[2][smooth]) > 5.0
 
 
+def test_the_waterline_has_one_tangent_plane(hull: Hull) -> None:
+    ours = {key.removesuffix(" port"): value for key, value in to_geomdl(hull).items() if key.endswith(" port")}
+    before = {patch.name: hull.nurbs_patch(patch.name)[0].to_geomdl() for patch in hull.patches}
+    kinks = []
+    for above, below in hull.parent.along.items():
+        for surfaces in (before, ours):
+            topsides = [point_and_normal(surfaces[above], u, 0.0) for u in PLACES[::3]]
+            ship = [point_and_normal(surfaces[below], u, 1.0) for u in PLACES[::3]]
+            assert np.allclose([a[0] for a in topsides], [b[0] for b in ship], atol=1e-6 * hull.length / 100.0)
+            cosines = [a[1] @ b[1] for a, b in zip(topsides, ship, strict=True)]
+            smooth = np.array([a[0][1] for a in topsides]) > 0.01 * hull.breadth
+            kinks.append(float(np.max(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))[smooth])))
+    assert max(kinks[0::2]) > 2.0 and max(kinks[1::2]) < 1.0
+
+
 def test_little_moves_and_nothing_opens(hull: Hull) -> None:
     before = {patch.name: hull.nurbs_patch(patch.name)[0] for patch in hull.patches}
     after, moved = faired_seams(hull.parent, before)
     # 18 mm on 355 m: less than the shipped hull's fit leaves of its points there (34 mm at the counter)
     assert 0.0 < moved < 5e-5 * hull.length
     changed = {name for name, surface in after.items() if surface is not before[name]}
-    assert changed == {*SEAMS, "topsides_aft"}
+    assert changed == {*SEAMS, *hull.parent.along}
     line = np.linspace(0.0, 1.0, 101)
     end = np.array([0.0, 1.0])
-    for name in changed:
+    for name in SEAMS:
         # both ends in u, and the edges below and above but for the waterline, stay where they were
         assert np.allclose(after[name].evaluate(end, line), before[name].evaluate(end, line), atol=1e-9)
+    for name in hull.parent.along:
+        # decks stay, and where topsides meet they still do
+        assert np.allclose(after[name].evaluate(line, end[1:]), before[name].evaluate(line, end[1:]), atol=1e-9)
+        other = hull.parent.girth[name][0]
+        if other != name:
+            assert name == "topsides_aft"
+            ends = [surface.evaluate(at, line) for surface, at in ((after[name], end[1:]), (after[other], end[:1]))]
+            assert np.allclose(*ends, atol=1e-6 * hull.length / 100.0)
     for above, below in hull.parent.along.items():
         assert np.array_equal(after[above].control_points[:, 0], after[below].control_points[:, -1])
     assert all(np.min(surface.control_points[..., 1]) >= -1e-9 for surface in after.values())
