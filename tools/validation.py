@@ -148,8 +148,8 @@ model at 9.5 1/s, comes out of `hpsop validate` with 1.6 % in revolutions and 6 
 def _why() -> list[str]:
     lines = [
         "", "## What misses, and why", "",
-        "Looked at together, the points outside have few causes. We looked for errors of ours first (a speed, a rate",
-        "of rotation, a viscosity, pitch or camber read wrongly, rake and skew, the grid): none was found. Rake and",
+        "Looked at together, the points outside have few causes. We looked for errors of ours first (speeds, rates of",
+        "rotation and viscosities read again; pitch, camber, rake, skew and grid varied): none was found. Rake and",
         "skew of the B-series change its slopes by less than 3 %, a grid of 40 x 16 panels K_T by up to 1.2 %.",
     ]  # fmt: skip
     for words, head, rows in WHY:
