@@ -4,9 +4,20 @@ from __future__ import annotations
 
 import viser
 
-from hpsop_core.markup import Markup
+from hpsop_core.errors import HpsopError
+from hpsop_core.markup import Markup, fill
 
 _NOTHING = Markup("")
+
+
+def failure(error: BaseException) -> Markup:
+    """What stands where something could not be drawn."""
+    why = str(error) if isinstance(error, HpsopError) else f"{type(error).__name__}: {error}"
+    return fill(
+        '<div class="hp"><p class="bad" role="alert" data-failed="1">This could not be drawn ({}). What changes next '
+        "draws it again; the rest of the page goes on.</p></div>",
+        why,
+    )
 
 
 class Slot:
@@ -23,6 +34,10 @@ class Slot:
         # viser's encoder knows plain text only
         self._handle = gui.add_html(str(content))
         self._content = content
+
+    def failed(self, error: BaseException) -> None:
+        """Say that what belongs here could not be drawn, in place of what is no longer true."""
+        self.show(failure(error))
 
     def show(self, content: Markup) -> None:
         """Show this markup from now on."""

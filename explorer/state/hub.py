@@ -8,6 +8,17 @@ from collections.abc import Callable, Iterable
 from explorer.server.worker import LatestWorker
 
 
+def _told(callback: Callable[[], None], failed: Callable[[BaseException], None]) -> Callable[[], None]:
+    def run() -> None:
+        try:
+            callback()
+        except Exception as error:
+            failed(error)
+            raise
+
+    return run
+
+
 class Hub:
     """Tells views that a topic changed.
 
@@ -24,8 +35,21 @@ class Hub:
         self._lock = threading.Lock()
         self._serial = 0
 
-    def on(self, topics: Iterable[str], callback: Callable[[], None]) -> None:
-        """Call ``callback`` on the worker after any of these topics changed."""
+    def on(
+        self,
+        topics: Iterable[str],
+        callback: Callable[[], None],
+        failed: Callable[[BaseException], None] | None = None,
+    ) -> None:
+        """Call ``callback`` on the worker after any of these topics changed.
+
+        Args:
+            topics: of any number.
+            callback: draws a view anew.
+            failed: told of what it raises, so that the view can say so instead of what stood there before.
+        """
+        if failed is not None:
+            callback = _told(callback, failed)
         with self._lock:
             self._serial += 1
             for topic in topics:

@@ -56,8 +56,8 @@ class ChartsView:
         self._controls_below = Slot(gui)
         session.gestures.on("act", "tab", self._choose)
         for topic in sorted({topic for tab in tabs.values() for topic in tab.topics}):
-            session.hub.on((topic,), partial(self._topic, topic))
-        session.hub.on(("tab", "size"), self.draw)
+            session.hub.on((topic,), partial(self._topic, topic), self._html.failed)
+        session.hub.on(("tab", "size"), self.draw, self._html.failed)
         self.draw()
 
     def draw(self) -> None:

@@ -21,7 +21,7 @@ class LibraryView:
         self._app = app
         self._runs = runs
         self._html = Slot(gui)
-        app.hub.on(("library",), self.draw)
+        app.hub.on(("library",), self.draw, self._html.failed)
         self.draw()
 
     def draw(self) -> None:

@@ -38,7 +38,7 @@ class RunView:
         self._buttons = Slot(gui)
         self._facts_slot = Slot(gui)
         self._bar = gui.add_progress_bar(0.0)
-        app.hub.on(("run", "people", "library"), self.draw)
+        app.hub.on(("run", "people", "library"), self.draw, self._facts_slot.failed)
         self.draw()
 
     def draw(self) -> None:

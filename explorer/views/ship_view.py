@@ -82,7 +82,7 @@ class ShipView:
         session.gestures.on("act", "ship_say", self._say)
         session.gestures.on("act", "ship_blades", self._say_blades)
         session.gestures.on("act", "ship_away", lambda event: ships.put_away(event.arg))
-        session.hub.on(("ship", "size"), self.draw)
+        session.hub.on(("ship", "size"), self.draw, self._words.failed)
         # on the hub's own thread: a file may be understood at this moment, and the older picture must not come last
         session.worker.every(self.draw)
 

@@ -62,8 +62,8 @@ class TableView:
         )
         self._only.on_update(lambda event: session.worker.latest("table filter", self._type) if event.client else None)
         self._html = Slot(gui)
-        session.hub.on(("run", "selection", "table", "stars"), self.draw)
-        session.hub.on(("filter",), self._filtered)
+        session.hub.on(("run", "selection", "table", "stars"), self.draw, self._html.failed)
+        session.hub.on(("filter",), self._filtered, self._html.failed)
         for name, action in (
             ("table_sort", self._sort),
             ("table_which", self._which),

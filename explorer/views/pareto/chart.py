@@ -50,7 +50,8 @@ class ParetoChart:
         # apart from the chart, which is drawn at every selection: what was opened stays open
         self._words = Slot(gui)
         self.limits: Limits = ((0.0, 1.0), (0.0, 1.0))
-        session.hub.on(("run", "scrub", "filter", "pins", "selection", "zoom pareto", "size", "layers"), self.draw)
+        topics = ("run", "scrub", "filter", "pins", "selection", "zoom pareto", "size", "layers")
+        session.hub.on(topics, self.draw, self._html.failed)
         self.draw()
 
     @property

@@ -28,7 +28,9 @@ class Scrubber:
         self._controls = Slot(gui)
         self._words = Slot(gui)
         self._slider.on_update(self._on_slider)
-        session.hub.on(("run", "scrub", "filter", "zoom pareto", "layers", "play", "follow"), self.draw)
+        session.hub.on(
+            ("run", "scrub", "filter", "zoom pareto", "layers", "play", "follow"), self.draw, self._words.failed
+        )
         for name, action in (
             ("step", self._step),
             ("play", self._play),
