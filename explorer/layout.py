@@ -23,7 +23,7 @@ from explorer.views.design_view import DesignView
 from explorer.views.help_view import HelpView
 from explorer.views.help_words import purpose
 from explorer.views.library_view import LibraryView
-from explorer.views.on_display import follow_best, select_first
+from explorer.views.on_display import Renewal, follow_best, select_first
 from explorer.views.overlay_view import OverlayView
 from explorer.views.parallel_view import ParallelBrushes
 from explorer.views.pareto.chart import ParetoChart
@@ -208,5 +208,6 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
                 panel.expand()
 
     session.hub.on(("options",), docks)
+    Renewal(session, designs)
     session.hub.on(("run", "follow", "selection"), lambda: follow_best(session, designs))
     session.worker.latest("first selection", lambda: select_first(session, designs))

@@ -182,6 +182,15 @@ class Session:
             self._selected = shown
         self._changed("selection")
 
+    def renew(self, again: Callable[[Shown], Shown | None]) -> None:
+        """Show the same designs with what is true of them now; one that is no longer to be had is left out."""
+        selected = self.selected
+        chosen = again(selected) if selected is not None else None
+        pins = tuple(found for item in self.pins if (found := again(item)) is not None)
+        with self.app.lock:
+            self._selected, self._pins = chosen, pins
+        self.hub.changed("selection", "pins")
+
     def pin(self, shown: Shown) -> None:
         """Keep a design side by side, or drop it when it is kept already."""
         with self.app.lock:

@@ -2,10 +2,14 @@
 
 from __future__ import annotations
 
+import dataclasses
+
 from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.state.shown import Shown
+from hpsop_core.case.case import Case
 from hpsop_core.charts.looks import Look
+from hpsop_core.errors import HpsopError
 
 
 def select_design(session: Session, designs: Designs, design_id: int) -> None:
@@ -39,6 +43,47 @@ def select_first(session: Session, designs: Designs) -> None:
     if first.kind != "initial":
         session.set_options(ghost=True)
     session.select(first)
+
+
+class Renewal:
+    """Before the first run the page shows the case as it is set up: its designs are evaluated anew when that changes.
+
+    Of a run on display the designs stay as its own case has them.
+    """
+
+    def __init__(self, session: Session, designs: Designs) -> None:
+        self._session = session
+        self._designs = designs
+        self._case = session.picture.case
+        session.hub.on(("run",), self._renew)
+
+    def _renew(self) -> None:
+        session, before = self._session, self._case
+        picture = session.picture
+        case = self._case = picture.case
+        searched_alike = dataclasses.replace(case, optimization=before.optimization)
+        if picture.name or searched_alike == before:
+            return
+        if dataclasses.replace(searched_alike, bounds=before.bounds) == before:
+            # bounds move no number of a design: only what it stands on
+            session.renew(lambda shown: _on_bounds(shown, case))
+            return
+        try:
+            session.renew(lambda shown: self._designs.again(shown.saved()))
+            if session.selected is None:
+                session.select(self._designs.first())
+        except HpsopError as error:
+            # better nothing than numbers of another case
+            session.leave_run(None)
+            session.notify("The initial design has no numbers", str(error), "red")
+
+
+def _on_bounds(shown: Shown, case: Case) -> Shown:
+    evaluation = shown.evaluation
+    if not evaluation.ok:
+        return shown
+    active = case.bounds.active(evaluation.variables)
+    return dataclasses.replace(shown, evaluation=dataclasses.replace(evaluation, active_bounds=active))
 
 
 def ghost_of(session: Session, designs: Designs) -> tuple[Shown | None, int | None]:
