@@ -100,9 +100,10 @@ def deck_furniture(hull: Hull) -> Boxes:
     length = hull.length
     parent = hull.parent
     slender = parent.hydrostatics.block_coefficient < _SLENDER
-    large = parent.length * _model_scale(parent.length) >= _LARGE
+    size = _size(hull)
+    large = size * _model_scale(size) >= _LARGE
     if slender and large:
-        two = parent.length >= _TWO_ISLANDS
+        two = size * _model_scale(size) >= _TWO_ISLANDS
         house, funnel = (0.68, 0.20) if two else (0.19, 0.15)
         tiers = 3 if two else 2
         clear = [_house(pile, deck, house * length, (2.0 * tiers + 3.0) * 2.9), _stack(pile, deck, funnel * length)]
@@ -123,6 +124,15 @@ def deck_furniture(hull: Hull) -> Boxes:
     return pile.boxes()
 
 
+def _size(hull: Hull) -> float:
+    """The length that decides what stands on deck: the parent's, the same for all designs of a ship.
+
+    A hull of quite another size, such as a model of six metres of a ship's form, goes by its own.
+    """
+    parent = hull.parent.length
+    return parent if 0.5 < hull.length / parent < 2.0 else hull.length
+
+
 def _model_scale(length: float) -> float:
     return 1.0 if length >= _MODEL else _STANDS_FOR / length
 
@@ -131,7 +141,7 @@ def _deck(hull: Hull) -> _Deck:
     pieces = [hull.patch_points(name, _EDGE_STATIONS, np.array([1.0]))[:, 0] for name in hull.parent.topsides]
     edge = np.concatenate(pieces) if pieces else np.array([[0.0, 0.5 * hull.breadth, hull.draft]])
     edge = edge[np.argsort(edge[:, 0], kind="stable")]
-    return _Deck(edge[:, 0], np.abs(edge[:, 1]), edge[:, 2], 1.0 / _model_scale(hull.parent.length))
+    return _Deck(edge[:, 0], np.abs(edge[:, 1]), edge[:, 2], 1.0 / _model_scale(_size(hull)))
 
 
 def _house(pile: _Pile, deck: _Deck, at: float, height: float) -> tuple[float, float]:
