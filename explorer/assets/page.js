@@ -281,6 +281,42 @@
       last.factor = Math.max(0.25, Math.min(4, last.factor * factor));
     else H.send({ t: "zoom", chart: svg.dataset.chart, fx: p.fx, fy: p.fy, factor });
   }, { capture: true, passive: false });
+  // ---- undo and redo: of the what-if where its tab is open and one was last at work outside the settings, else of these
+  let inSettings = true;
+  ["pointerdown", "focusin"].forEach((type) => listen(document, type, (event) => {
+    if (event.target.closest) inSettings = !!event.target.closest('[data-dock-region="left"], .hpsop-last');
+  }, true));
+  const opened = (name) => Array.from(document.querySelectorAll("[role=tab]")).some((tab) =>
+    tab.textContent.trim() === name && tab.getAttribute("aria-selected") === "true");
+  listen(document, "keydown", (event) => {
+    const key = event.key.toLowerCase(), box = event.target;
+    if (!(event.ctrlKey || event.metaKey) || event.altKey || !["z", "y"].includes(key)) return;
+    // what is being typed has the browser's own undo
+    const typing = box.matches && box.matches("input:not([type=range]):not([type=checkbox]), textarea");
+    if (typing && !(box.matches(".bound") && box.value === box.defaultValue)) return;
+    event.preventDefault();
+    event.stopPropagation();
+    const back = key === "z" && !event.shiftKey;
+    if (!inSettings && opened("What-if")) H.send({ t: "act", name: "whatif_turn", arg: back ? "back" : "again" });
+    else H.send({ t: "act", name: back ? "undo" : "redo", arg: "" });
+  }, true);
+
+  // ---- axes of the parallel coordinates: the name of one has the focus, and arrows move it ---------------------------
+  listen(document, "keydown", (event) => {
+    const axis = event.target.dataset && event.target.dataset.axis;
+    if (!axis || !["ArrowLeft", "ArrowRight"].includes(event.key)) return;
+    event.preventDefault();
+    event.stopImmediatePropagation();
+    H.send({ t: "act", name: "axis_move", arg: axis + "=" + (event.key === "ArrowLeft" ? -1 : 1) });
+    // the answer draws the chart anew: who moves an axis goes on with it
+    const again = setInterval(() => {
+      if (document.activeElement !== document.body) return;
+      const drawn = document.querySelector('[data-axis="' + axis + '"]');
+      if (drawn) drawn.focus();
+    }, 40);
+    setTimeout(() => clearInterval(again), 1500);
+  }, true);
+
   listen(document, "keydown", (event) => {
     const target = event.target;
     if (target.closest && target.closest("input, textarea, [contenteditable], [role=slider], [role=combobox]")) return;

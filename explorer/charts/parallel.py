@@ -11,17 +11,21 @@ from explorer.charts.colour_ramp import colour_of, finite_limits
 from explorer.state.run_picture import RunPicture
 from hpsop_core.case.variables import SEARCH_TABLE
 from hpsop_core.markup import Markup, fill, joined, symbol_svg
-from hpsop_core.quantities import OBJECTIVES, Quantity, all_quantities, condition_names, free_variables, number_text
+from hpsop_core.quantities import OBJECTIVES, Quantity, free_variables, number_text, quantities_of_case
 
 _MOST_LINES = 350
 _TEXT = '<text x="{:.1f}" y="{:.1f}" text-anchor="middle" class="{}">{}</text>'
+_NAME = (
+    '<text x="{:.1f}" y="{:.1f}" text-anchor="middle" class="axis-title axis-move" tabindex="0" role="button" '
+    'data-axis="{}" aria-label="{}: arrow keys move it" aria-keyshortcuts="ArrowLeft ArrowRight">{}</text>'
+)
 _RESULTS = ("block_coefficient", "total_resistance_1", "open_water_efficiency_1", "delivered_power_1")
 
 
 def axes_of(picture: RunPicture, order: Sequence[str] = ()) -> list[Quantity]:
     """Free variables, a few results, and the objectives; those named in ``order`` (keys) first, as it says."""
     chosen = free_variables(picture.case)
-    everything = {quantity.key: quantity for quantity in all_quantities(condition_names(picture.case))}
+    everything = {quantity.key: quantity for quantity in quantities_of_case(picture.case)}
     chosen += [everything[key] for key in _RESULTS if key in everything]
     axes = [*chosen, *OBJECTIVES]
     place = {key: index for index, key in enumerate(order)}
@@ -38,6 +42,16 @@ def moved(picture: RunPicture, order: Sequence[str], start: float, end: float) -
         return None
     key = keys.pop(source)
     keys.insert(min(max(target, 0), len(keys)), key)
+    return tuple(keys)
+
+
+def stepped(picture: RunPicture, order: Sequence[str], key: str, by: int) -> tuple[str, ...] | None:
+    """The order of the axes after one was moved by so many places; None where there is no such axis or place."""
+    keys = [quantity.key for quantity in axes_of(picture, order)]
+    if key not in keys or not 0 <= (place := keys.index(key) + by) < len(keys):
+        return None
+    keys.remove(key)
+    keys.insert(place, key)
     return tuple(keys)
 
 
@@ -111,9 +125,9 @@ def parallel_chart(
         low, high = limits[index]
         title_y = 11 if index % 2 == 0 else 25
         parts.append(fill('<path d="M{:.1f} {:.1f}V{:.1f}" class="axis"/>', x, top, top + plot_height))
-        hint = f"{quantity.label}; drag the name sideways to move its axis"
+        hint = f"{quantity.label}; drag the name sideways to move its axis, or use ← → on it"
         title = fill("<title>{}</title>{}", hint, symbol_svg(_axis_title(quantity)))
-        parts.append(fill(_TEXT, x, title_y, "axis-title axis-move", title))
+        parts.append(fill(_NAME, x, title_y, quantity.key, f"axis of {quantity.label}", title))
         for value, y in ((high, top - 4), (low, top + plot_height + 12)):
             parts.append(fill(_TEXT, x, y, "note", number_text(value, min(quantity.decimals, 3))))
         if quantity.key in filters:
@@ -126,9 +140,10 @@ def parallel_chart(
         parts.append(fill(_TEXT, width / 2, height / 2, "empty", "no designs yet"))
     return fill(
         '<svg class="chart" data-chart="parallel" data-plot="{left:g},{top:g},{wide:g},{high:g}" '
-        'data-limits="0,1,0,1" data-drag="brush" data-click="1" viewBox="0 0 {width:g} {height:g}" role="img" '
+        'data-limits="0,1,0,1" data-drag="brush" data-click="1" viewBox="0 0 {width:g} {height:g}" role="group" '
         'aria-label="parallel coordinates">{parts}</svg><p class="soft">Drag along an axis to keep a range (it filters '
-        "the Pareto chart too); click an axis to drop its range; drag the name of an axis sideways to move it.</p>",
+        "the Pareto chart too); click an axis to drop its range; drag the name of an axis sideways to move it, or use "
+        "← → on it.</p>",
         left=left,
         top=top,
         wide=width - left - right,

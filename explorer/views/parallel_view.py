@@ -1,8 +1,8 @@
-"""Gestures on the parallel coordinates: a drag along an axis keeps a range, one on its name moves it."""
+"""Gestures on the parallel coordinates: a drag along an axis keeps a range, its name is dragged or stepped."""
 
 from __future__ import annotations
 
-from explorer.charts.parallel import brushed, moved
+from explorer.charts.parallel import brushed, moved, stepped
 from explorer.server.bridge import PageEvent
 from explorer.state.session import Session
 
@@ -17,6 +17,7 @@ class ParallelBrushes:
         self._session = session
         session.gestures.on("brush", "parallel", self._brush)
         session.gestures.on("click", "parallel", self._click)
+        session.gestures.on("act", "axis_move", self._step)
 
     def _brush(self, event: PageEvent) -> None:
         fx, fy0, fy1 = (event.numbers.get(name) for name in ("fx0", "fy0", "fy1"))
@@ -29,6 +30,14 @@ class ParallelBrushes:
         order = moved(self._session.picture, self._session.charts.axes, fx, end)
         if order is not None:
             self._session.set_charts(axes=order)
+
+    def _step(self, event: PageEvent) -> None:
+        """An arrow key on the name of an axis: "draft=1"."""
+        key, _, by = event.arg.partition("=")
+        if by in ("1", "-1"):
+            order = stepped(self._session.picture, self._session.charts.axes, key, int(by))
+            if order is not None:
+                self._session.set_charts(axes=order)
 
     def _click(self, event: PageEvent) -> None:
         fx, fy = event.numbers.get("fx"), event.numbers.get("fy")
