@@ -8,7 +8,8 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
+from functools import lru_cache
 
 from hpsop_core.case import constraints
 from hpsop_core.case.case import KNOT, Case
@@ -16,6 +17,9 @@ from hpsop_core.case.declared_variable import Variable
 from hpsop_core.case.objectives import objective_named
 from hpsop_core.case.variables import SEARCH_TABLE, VARIABLE_NAMES, DesignVariables, value_of
 from hpsop_core.evaluation.result import Evaluation
+from hpsop_core.units import SHIP_SIZE, Size, number_text, size_of_ship
+
+__all__ = ["number_text"]
 
 CONSTRAINT_GROUP = "Constraints (feasible ≤ 0)"
 
@@ -71,13 +75,17 @@ class Quantity:
         """Symbol and unit, for an axis."""
         return f"{self.symbol} [{self.unit or '–'}]"
 
+    def sized(self, size: Size) -> Quantity:
+        """The same number in the unit and with the digits of a ship of this size."""
+        unit, plain = size.unit(self.unit, self.decimals), self.value
+        if (unit.symbol, unit.decimals) == (self.unit, self.decimals):
+            return self
 
-def number_text(value: float | None, decimals: int) -> str:
-    """Fixed decimals, a true minus, a space between thousands; a dash for nothing."""
-    if value is None or not math.isfinite(value):
-        return "–"
-    text = f"{value:,.{decimals}f}".replace(",", " ").replace("-", "−")
-    return text.replace("−", "", 1) if not text.strip("−0. ") else text
+        def value(evaluation: Evaluation) -> float | None:
+            found = plain(evaluation)
+            return None if found is None else unit.factor * found
+
+        return replace(self, unit=unit.symbol, decimals=unit.decimals, value=value, scale=unit.factor * self.scale)
 
 
 def change_text(initial: float | None, selected: float | None, decimals: int, relative: bool = True) -> str:
@@ -505,7 +513,27 @@ def conditions_of(evaluation: Evaluation) -> tuple[str, ...]:
     return tuple(f"{condition.speed / KNOT:.4g} kn" for condition in evaluation.conditions)
 
 
-def condition_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
+def size_of_case(case: Case) -> Size:
+    """The size of a case's initial design, by which all designs of the case are written in the same units."""
+    initial = case.initial
+    return size_of_ship(initial.length, initial.breadth, initial.draft, max(case.speeds), case.constants.density)
+
+
+def size_of_design(evaluation: Evaluation) -> Size:
+    """The size of one design that stands alone; a ship's where it has no numbers."""
+    if not evaluation.ok or not evaluation.conditions:
+        return SHIP_SIZE
+    hull = evaluation.hull
+    return size_of_ship(hull.length, hull.breadth, hull.draft, max(item.speed for item in evaluation.conditions))
+
+
+def quantity_of(evaluation: Evaluation, key: str, size: Size) -> str:
+    """One number with its unit: "31.25 MW"; ``key`` as of ``all_quantities``."""
+    found = next(item for item in all_quantities(("",) * len(evaluation.conditions), size) if item.key == key)
+    return f"{found.text(evaluation)} {found.unit}".strip()
+
+
+def condition_quantities(names: Sequence[str], size: Size = SHIP_SIZE) -> tuple[Quantity, ...]:
     """The numbers of each operating condition, under its name (see ``condition_names``)."""
     made = []
     for index, words in enumerate(names):
@@ -522,14 +550,28 @@ def condition_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
                     better,
                     formula,
                     scale,
-                )
+                ).sized(size)
             )
     return tuple(made)
 
 
-def all_quantities(names: Sequence[str]) -> tuple[Quantity, ...]:
-    """Everything there is, in the order of the tables; ``names`` of the conditions."""
-    return (*OBJECTIVES, *HULL, *SHIP, *PROPELLER, *condition_quantities(names), *CONSTRAINTS)
+def all_quantities(names: Sequence[str], size: Size = SHIP_SIZE) -> tuple[Quantity, ...]:
+    """Everything there is, in the order of the tables; ``names`` of the conditions, in the units of a ship's size."""
+    return _everything(tuple(names), size)
+
+
+@lru_cache(maxsize=32)
+def _everything(names: tuple[str, ...], size: Size) -> tuple[Quantity, ...]:
+    ship = (item.sized(size) for item in (*HULL, *SHIP, *PROPELLER))
+    return (*OBJECTIVES, *ship, *condition_quantities(names, size), *CONSTRAINTS)
+
+
+def quantities_of_case(case: Case) -> tuple[Quantity, ...]:
+    """Everything there is of a case's designs, in its units; its objectives under their own names."""
+    chosen = zip(OBJECTIVES, (case.objectives.first, case.objectives.second), strict=True)
+    named = {item.key: replace(item, label=objective_named(name).title) for item, name in chosen}
+    everything = all_quantities(condition_names(case), size_of_case(case))
+    return tuple(named.get(item.key, item) for item in everything)
 
 
 def objective_title(name: str, symbol: str) -> str:

@@ -15,7 +15,7 @@ from explorer.state.run_picture import RunPicture
 from explorer.state.table_options import TableOptions
 from hpsop_core.errors import InputError
 from hpsop_core.markup import Markup, fill, joined, symbol_html, symbol_plain
-from hpsop_core.quantities import Quantity, all_quantities, condition_names, number_text, variable_quantities
+from hpsop_core.quantities import Quantity, number_text, quantities_of_case, variable_quantities
 
 ROWS = 25
 """Rows of a page: the browser never holds more, however many designs a run has."""
@@ -29,7 +29,7 @@ _DIGITS = str.maketrans("₀₁₂₃₄₅₆₇₈₉", "0123456789", "_ ")
 def known_columns(picture: RunPicture) -> dict[str, Quantity]:
     """What a column can show of this run, by key."""
     case = picture.case
-    declared = (*all_quantities(condition_names(case)), *variable_quantities(case))
+    declared = (*quantities_of_case(case), *variable_quantities(case))
     held = {"f1", "f2", *picture.columns}
     found: dict[str, Quantity] = {}
     for item in declared:

@@ -278,8 +278,8 @@ def pareto_chart(picture: RunPicture, background: Plot, marks: Sequence[Mark], k
     draw_marks(plot, marks)
     if not len(picture.ids) and len(marks) <= 2:
         begun = picture.status in ACTIVE
-        words = "The first designs are being evaluated:" if begun else "No designs yet.\nPress Start:"
-        plot.message(f"{words} each generation's front appears here.", numbers=True)
+        words = "The first designs are being evaluated:\n" if begun else "No designs yet.\nPress Start: "
+        plot.message(f"{words}each generation's front appears here.", numbers=True)
     return plot
 
 

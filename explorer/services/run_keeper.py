@@ -34,7 +34,7 @@ from hpsop_core.case.case import Case
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation.reference import Reference
 from hpsop_core.evaluation.result import Evaluation
-from hpsop_core.quantities import Quantity, all_quantities, condition_names, variable_quantities
+from hpsop_core.quantities import Quantity, quantities_of_case, variable_quantities
 from hpsop_core.runs.controller import RunController
 from hpsop_core.runs.events import RunEvent
 from hpsop_core.runs.fronts import FrontHistory
@@ -344,7 +344,7 @@ class RunKeeper:
         if not self._quantities:
             self._quantities = (
                 *variable_quantities(case),
-                *all_quantities(condition_names(case)),
+                *quantities_of_case(case),
             )
             self._table = np.zeros((0, len(self._quantities)))
         driven = self.driven

@@ -12,7 +12,7 @@ from explorer.state.shown import Shown
 from explorer.views.chips import GAP, box, chip, chips, soft
 from explorer.views.tables import many_table
 from hpsop_core.markup import Markup, fill
-from hpsop_core.quantities import condition_names
+from hpsop_core.quantities import quantities_of_case
 
 
 class CompareView:
@@ -22,7 +22,7 @@ class CompareView:
         self._session = session
         self._designs = designs
         self._html = Slot(gui)
-        session.hub.on(("pins", "options", "selection"), self.draw)
+        session.hub.on(("pins", "options", "selection"), self.draw, self._html.failed)
         session.gestures.on("act", "unpin", self._unpin)
         session.gestures.on("act", "ghost_pin", self._ghost)
         session.gestures.on("act", "show_pin", self._show)
@@ -69,7 +69,7 @@ class CompareView:
                 )
             )
         initials = {level: self._designs.initial(level) for level in levels}
-        table = many_table(initials, pins, condition_names(picture.case))
+        table = many_table(initials, pins, quantities_of_case(picture.case))
         self._html.show(box(*rows, table))
 
     def _pinned(self, event: PageEvent) -> Shown | None:

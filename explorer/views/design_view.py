@@ -16,7 +16,8 @@ from explorer.views.on_display import select_design
 from explorer.views.tables import comparison_table, headline, warnings_html
 from hpsop_core.evaluation.levels import TRUTH
 from hpsop_core.markup import Markup, fill
-from hpsop_core.quantities import condition_names, conditions_of, number_text
+from hpsop_core.quantities import conditions_of, number_text, quantities_of_case, size_of_case
+from hpsop_core.units import Size
 
 
 class DesignView:
@@ -27,7 +28,7 @@ class DesignView:
         self._designs = designs
         self._refining = refining
         self._html = Slot(gui)
-        session.hub.on(("selection", "pins", "run"), self.draw)
+        session.hub.on(("selection", "pins", "run"), self.draw, self._html.failed)
         session.hub.on((TOPIC,), self._errors_changed)
         session.gestures.on("act", "refine", self._refine)
         session.gestures.on("act", "choose", self._choose)
@@ -43,7 +44,8 @@ class DesignView:
         state = (shown, session.pins, picture.compromise, picture.knee, picture.name, picture.current_level, doing)
         if state == self._last:
             return
-        self._last = state
+        # what fails below is tried again when it is asked for again
+        self._last = ()
         if shown is None:
             self._html.show(box(soft("Computing the initial design …")))
             return
@@ -70,7 +72,7 @@ class DesignView:
             chip("pin", "pinned" if pinned else "pin", on=pinned, hint="keep this design side by side (at most four)"),
         )
         initial = self._designs.initial(shown.evaluation.level)
-        table = comparison_table(initial, shown, condition_names(session.picture.case))
+        table = comparison_table(initial, shown, quantities_of_case(picture.case))
         self._html.show(
             box(
                 fill(
@@ -79,12 +81,13 @@ class DesignView:
                     headline(shown),
                 ),
                 row,
-                _errors_row(shown, doing, self._refining.busy, picture.current_level),
+                _errors_row(shown, doing, self._refining.busy, picture.current_level, size_of_case(picture.case)),
                 warnings_html(shown),
                 traffic_lights(picture.case, shown, conditions_of(shown.evaluation)),
                 table,
             )
         )
+        self._last = state
 
     def _choose(self, event: PageEvent) -> None:
         picture = self._session.picture
@@ -115,7 +118,7 @@ class DesignView:
             self._session.pin(selected)
 
 
-def _errors_row(shown: Shown, doing: str, busy: bool, level: int) -> Markup:
+def _errors_row(shown: Shown, doing: str, busy: bool, level: int, size: Size) -> Markup:
     """What stands behind the errors, and the buttons that solve them; nothing at level 1, which has none."""
     evaluation = shown.evaluation
     if not evaluation.ok or evaluation.level != TRUTH.number:
@@ -125,8 +128,10 @@ def _errors_row(shown: Shown, doing: str, busy: bool, level: int) -> Markup:
         words = "± of a predicted design: solve the front to know it"
     else:
         words = "± solved for this design" if own else "± typical of level 2"
+    unit = size.unit("MW", 2)
     terms = "\n".join(
-        f"{term.replace('_', ' ')}: {number_text(1e-6 * widths['delivered_power_1'], 2)} MW"
+        f"{term.replace('_', ' ')}: "
+        f"{number_text(1e-6 * unit.factor * widths['delivered_power_1'], unit.decimals)} {unit.symbol}"
         for term, widths in evaluation.error_terms.items()
         if "delivered_power_1" in widths
     )

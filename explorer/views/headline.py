@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 
 from explorer.state.shown import Shown
 from hpsop_core.case.case import KNOT, Case
@@ -11,9 +11,12 @@ from hpsop_core.evaluation.coverage import KEPT, LIMIT, UNCOVERED, VIOLATED, Sta
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import Markup, fill, joined
 from hpsop_core.optimization.families import STATED_ERRORS
-from hpsop_core.quantities import change_text, number_text
+from hpsop_core.quantities import change_text, number_text, size_of_case
+from hpsop_core.units import Size
 
 _MOST_CONDITIONS = 2
+# of a number of the usual order
+_DIGITS = 3
 _STATE_WORDS = {KEPT: "kept", LIMIT: "at its limit", VIOLATED: "violated", UNCOVERED: "not covered"}
 
 
@@ -28,6 +31,16 @@ class _Line:
     solved: bool = True
     error: str = ""
     scale: float = 1e-6
+
+    def sized(self, size: Size) -> _Line:
+        """The same in the unit and with the digits of a ship of this size."""
+        unit, plain = size.unit(self.unit, self.decimals, _DIGITS), self.value
+
+        def value(item: Evaluation) -> float | None:
+            found = plain(item)
+            return None if found is None else unit.factor * found
+
+        return replace(self, unit=unit.symbol, decimals=unit.decimals, value=value, scale=unit.factor * self.scale)
 
 
 def _power(index: int) -> Callable[[Evaluation], float | None]:
@@ -96,7 +109,8 @@ def headline_card(case: Case, initial: Shown | None, shown: Shown) -> Markup:
     before = initial.evaluation if initial is not None and shown.kind != "initial" and initial.evaluation.ok else None
     rows = []
     missing = []
-    for line in _lines(evaluation, case.constants.density):
+    size = size_of_case(case)
+    for line in (line.sized(size) for line in _lines(evaluation, case.constants.density)):
         value = line.value(evaluation)
         if value is None:
             missing.append(line.words)

@@ -19,6 +19,7 @@ from hpsop_core.quantities import (
     SHIP,
     Quantity,
     condition_quantities,
+    size_of_case,
     variable_quantities,
 )
 
@@ -42,7 +43,8 @@ GESTURES = (
     ("← → Home End", "walk along the front"),
     ("wheel, drag, double click on the front", "zoom, move, show all"),
     ("Shift + drag on the front", "keep a box of designs; Esc drops it"),
-    ("drag along an axis of the parallel coordinates", "keep a range"),
+    ("drag along an axis of the parallel coordinates", "keep a range; its name, dragged or by ← →, moves the axis"),
+    ("Ctrl+Z, Ctrl+Shift+Z", "undo and redo a change of the settings, or of the what-if where one was at work there"),
     ("rest on a label or a row's name", "what it means"),
 )
 
@@ -125,14 +127,15 @@ def help_card(case: Case) -> Markup:
     objectives = joined(
         fill("<tr><td>{}</td><td>{}</td><td>{}</td></tr>", item.label, item.formula, item.words) for item in OBJECTIVES
     )
-    condition = condition_quantities(("",))
+    size = size_of_case(case)
+    condition = condition_quantities(("",), size)
     groups = (
         ("Design variables", _rows(variable_quantities(case))),
         ("Objectives (a case chooses two; less is better)", objectives),
         ("Constraints (g ≤ 0 is kept)", _rows(CONSTRAINTS)),
-        ("Hull", _rows(HULL)),
-        ("Ship", _rows(SHIP)),
-        ("Propeller", _rows(PROPELLER)),
+        ("Hull", _rows([item.sized(size) for item in HULL])),
+        ("Ship", _rows([item.sized(size) for item in SHIP])),
+        ("Propeller", _rows([item.sized(size) for item in PROPELLER])),
         ("At each operating condition", _rows(condition)),
     )
     glossary = joined(

@@ -34,7 +34,7 @@ from explorer.views.zooming import Zooming
 from hpsop_core.charts.looks import Sheet
 from hpsop_core.charts.search import Mark
 from hpsop_core.markup import Markup
-from hpsop_core.quantities import Quantity
+from hpsop_core.quantities import Quantity, size_of_case
 
 _CHOICES = (("x", "x", False), ("y", "y", False), ("colour", "colour", True), ("size", "size", True))
 _TOPICS = frozenset({"run", "filter", "selection", "pins", "scrub", "layers", "charts", "zoom scatter"})
@@ -126,7 +126,8 @@ class ScatterView:
         self._hovered = -1 if found is None else found
         self._serial += 1
         shown = self._designs.shown(found) if found is not None else None
-        self._tip.show(tooltip("scatter", design_card(shown) if shown is not None else NOTHING, self._serial))
+        card = design_card(shown, size_of_case(self._session.picture.case)) if shown is not None else NOTHING
+        self._tip.show(tooltip("scatter", card, self._serial))
 
 
 def _value(shown: Shown, quantity: Quantity) -> float:

@@ -95,8 +95,8 @@ class SettingsView:
         self._around.on_click(self._on_around)
         self._reset.on_click(self._on_reset)
         self._save.on_click(save)
-        app.hub.on(("draft", "run"), self.draw)
-        app.hub.on(("settings",), self.show_all)
+        app.hub.on(("draft", "run"), self.draw, self._about.failed)
+        app.hub.on(("settings",), self.show_all, self._about.failed)
         self.draw()
 
     def hints(self) -> Markup:
@@ -325,7 +325,7 @@ class SettingsView:
         """Readouts, marks of change, and the preset's two lines."""
         draft = self._app.draft
         self._follow_initial()
-        lines = joined(draft.base.description.strip().split("\n"), "<br>")
+        lines = joined(_paragraphs(draft.base.description), "<br>")
         try:
             draft.case()
             trouble = NOTHING
@@ -343,8 +343,13 @@ class SettingsView:
         history = self._app.history
         # always there: what lies below must not move away from under the mouse
         steps = chips(
-            chip("undo", "↶ undo", disabled=not history.can_undo, hint="take the last change of the settings back"),
-            chip("redo", "↷ redo", disabled=not history.can_redo, hint="make it again"),
+            chip(
+                "undo",
+                "↶ undo",
+                disabled=not history.can_undo,
+                hint="take the last change back (Ctrl+Z)",
+            ),
+            chip("redo", "↷ redo", disabled=not history.can_redo, hint="make it again (Ctrl+Shift+Z)"),
             soft(f"{count} changed" if count else "as the preset", "span"),
         )
         self._about.show(box(fill("<p><b>{}</b></p>", draft.base.title), soft(lines), trouble, steps))
@@ -421,6 +426,17 @@ class SettingsView:
                 )
                 words.append(said + widen)
         return chips(*words) if words else NOTHING
+
+
+def _paragraphs(text: str) -> list[str]:
+    """Lines of a description, of which one that ends within a sentence is only wrapped."""
+    found: list[str] = []
+    for line in text.strip().split("\n"):
+        if found and found[-1] and not found[-1].endswith((".", ":", ";", "!", "?")):
+            found[-1] += f" {line.strip()}"
+        else:
+            found.append(line.strip())
+    return found
 
 
 def _list_text(values: tuple[float, ...]) -> str:

@@ -14,13 +14,13 @@ from hpsop_core.quantities import (
     PROPELLER,
     SHIP,
     Quantity,
-    all_quantities,
     change_text,
     condition_quantities,
     conditions_of,
     standing_on,
     violated,
 )
+from hpsop_core.units import SHIP_SIZE, Size
 
 _ROOM_FOR_NAMES = 4
 _CONDITIONS_APART = 2
@@ -52,15 +52,17 @@ def warnings_html(shown: Shown) -> Markup:
         lines.append(
             fill('<p class="standing" data-standing="{}">Stands on: {}.</p>', len(standing), "; ".join(standing))
         )
-    lines += [fill('<p class="soft">{}</p>', text) for text in shown.evaluation.warnings]
+    # warnings are plain text of files and terminals
+    plain = (text.replace("2 pi Fn^2 L", "2π Fn² L") for text in shown.evaluation.warnings)
+    lines += [fill('<p class="soft">{}</p>', text) for text in plain]
     return joined(lines)
 
 
-def comparison_table(initial: Shown | None, selected: Shown | None, conditions: Sequence[str]) -> Markup:
+def comparison_table(initial: Shown | None, selected: Shown | None, quantities: Sequence[Quantity]) -> Markup:
     """Initial, selected and change, grouped; the conditions stand side by side in their own groups."""
     rows = [Markup("<tr><th></th><th>initial</th><th>selected</th><th>change</th></tr>")]
     group = ""
-    for quantity in all_quantities(conditions):
+    for quantity in quantities:
         first = quantity.value(initial.evaluation) if initial else None
         second = quantity.value(selected.evaluation) if selected else None
         if first is None and second is None:
@@ -84,13 +86,15 @@ def comparison_table(initial: Shown | None, selected: Shown | None, conditions: 
     return _table(rows)
 
 
-def many_table(initials: Mapping[int, Shown | None], designs: Sequence[Shown], conditions: Sequence[str]) -> Markup:
+def many_table(
+    initials: Mapping[int, Shown | None], designs: Sequence[Shown], quantities: Sequence[Quantity]
+) -> Markup:
     """All numbers of several designs with the difference to the initial design at the same level below each.
 
     Args:
         initials: the initial design by level; the column "initial" is that of the last design's level.
         designs: one or more.
-        conditions: their names.
+        quantities: of the case, in their order (``quantities_of_case``).
     """
     initial = initials.get(designs[-1].evaluation.level)
     heads = joined(
@@ -105,7 +109,7 @@ def many_table(initials: Mapping[int, Shown | None], designs: Sequence[Shown], c
     name = _name if len(designs) < _ROOM_FOR_NAMES else _short_name
     rows = [fill("<tr><th></th><th>initial</th>{}</tr>", heads)]
     group = ""
-    for quantity in all_quantities(conditions):
+    for quantity in quantities:
         first = quantity.value(initial.evaluation) if initial else None
         values = [quantity.value(item.evaluation) for item in designs]
         if first is None and all(value is None for value in values):
@@ -143,14 +147,13 @@ def _table(rows: Sequence[Markup]) -> Markup:
     return fill('<table class="numbers">{}</table>', joined(rows))
 
 
-def design_card(shown: Shown) -> Markup:
-    """Every number of a design, for the tooltip."""
+def design_card(shown: Shown, size: Size = SHIP_SIZE) -> Markup:
+    """Every number of a design, for the tooltip; units by the size of the run's ships."""
     evaluation = shown.evaluation
     names = conditions_of(evaluation)
-    columns = [
-        _table([_card_row(quantity, shown) for quantity in (*OBJECTIVES, *HULL, *SHIP, *PROPELLER, *CONSTRAINTS)])
-    ]
-    quantities = condition_quantities(names)
+    alone = (*OBJECTIVES, *(item.sized(size) for item in (*HULL, *SHIP, *PROPELLER)), *CONSTRAINTS)
+    columns = [_table([_card_row(quantity, shown) for quantity in alone])]
+    quantities = condition_quantities(names, size)
     each = len(quantities) // max(len(names), 1)
     groups = [quantities[index * each : (index + 1) * each] for index in range(len(names))]
     if len(groups) > _CONDITIONS_APART:

@@ -6,7 +6,7 @@ import viser
 
 from explorer.scene.camera import PRESETS, TITLES
 from explorer.server.bridge import PageEvent, link_box, overlay
-from explorer.server.html_slot import Slot
+from explorer.server.html_slot import Slot, failure
 from explorer.services.services import Services
 from explorer.state.session import Session
 from explorer.state.shown import Shown, file_name
@@ -17,7 +17,7 @@ from explorer.views.tables import headline
 from hpsop_core.errors import HpsopError
 from hpsop_core.export.design_files import zip_design
 from hpsop_core.markup import Markup, fill, joined
-from hpsop_core.quantities import conditions_of, number_text
+from hpsop_core.quantities import conditions_of, number_text, quantity_of, size_of_case
 
 _SWITCHES = (
     ("ghost", "Ghost", "the initial design beside the selected one; choose another in Compare"),
@@ -43,7 +43,7 @@ class ToolbarView:
         self._card = Slot(gui)
         self._link, self._links = Slot(gui), 0
         session.hub.on(("options", "selection", "run"), self.draw)
-        session.hub.on(("selection", "options", "pins", "legend"), self.draw_card)
+        session.hub.on(("selection", "options", "pins", "legend"), self.draw_card, self._card_failed)
         session.gestures.on("act", "switch", self._switch)
         session.gestures.on("act", "condition", self._condition)
         session.gestures.on("act", "take_away", self._take_away)
@@ -51,6 +51,9 @@ class ToolbarView:
         session.gestures.on("act", "report", self._report)
         self.draw()
         self.draw_card()
+
+    def _card_failed(self, error: BaseException) -> None:
+        self._card.show(overlay("card", fill('<div class="card">{}</div>', failure(error))))
 
     def draw(self) -> None:
         """The buttons."""
@@ -151,17 +154,14 @@ class ToolbarView:
         evaluation = shown.evaluation
         facts = NOTHING
         if evaluation.ok:
-            hull = evaluation.hull
+            case = self._session.picture.case
+            size = size_of_case(case)
             facts = fill(
-                "{}L<sub>PP</sub> {:.1f} m · B {:.2f} m · d {:.2f} m · C<sub>B</sub> {:.3f} · ∇ {} m³<br>"
-                "D {:.2f} m · Z {} · f₁ {} · f₂ {}",
-                headline_card(self._session.picture.case, self._designs.initial(evaluation.level), shown),
-                hull.length,
-                hull.breadth,
-                hull.draft,
-                hull.block_coefficient,
-                number_text(hull.displaced_volume, 0),
-                evaluation.variables.diameter,
+                "{}L<sub>PP</sub> {} · B {} · d {} · C<sub>B</sub> {:.3f} · ∇ {}<br>D {} · Z {} · f₁ {} · f₂ {}",
+                headline_card(case, self._designs.initial(evaluation.level), shown),
+                *(quantity_of(evaluation, key, size) for key in ("length", "breadth", "hull_draft")),
+                evaluation.hull.block_coefficient,
+                *(quantity_of(evaluation, key, size) for key in ("displaced_volume", "propeller_diameter")),
                 evaluation.variables.blade_count,
                 number_text(evaluation.objectives.get("f1"), 4),
                 number_text(evaluation.objectives.get("f2"), 4),

@@ -21,9 +21,10 @@ from explorer.views.tables import headline, warnings_html
 from hpsop_core.case.variables import SEARCH_TABLE, VARIABLE_NAMES, DesignVariables
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.markup import Markup, fill, joined
-from hpsop_core.quantities import conditions_of, number_text
+from hpsop_core.quantities import conditions_of, number_text, quantity_of, size_of_case
 
 _LEVEL2 = "Evaluate at level 2"
+_UNDO, _REDO = "the design before (Ctrl+Z)", "take undo back (Ctrl+Shift+Z)"
 
 
 class WhatIfView:
@@ -54,7 +55,7 @@ class WhatIfView:
         self._level2.on_click(self._on_level2)
         self._add.on_click(self._on_add)
         session.gestures.on("act", "whatif_turn", lambda event: self._turn(event.arg == "back"))
-        session.hub.on(("selection",), self._follow)
+        session.hub.on(("selection",), self._follow, self._html.failed)
         session.hub.on(("selection", "run"), self._show_buttons)
         session.hub.on(("left",), self._history.clear)
         self._follow()
@@ -115,8 +116,20 @@ class WhatIfView:
         self._steps.show(
             box(
                 chips(
-                    chip("whatif_turn", "↶ undo", "back", disabled=not history.can_undo, hint="the design before"),
-                    chip("whatif_turn", "↷ redo", "again", disabled=not history.can_redo, hint="take undo back"),
+                    chip(
+                        "whatif_turn",
+                        "↶ undo",
+                        "back",
+                        disabled=not history.can_undo,
+                        hint=_UNDO,
+                    ),
+                    chip(
+                        "whatif_turn",
+                        "↷ redo",
+                        "again",
+                        disabled=not history.can_redo,
+                        hint=_REDO,
+                    ),
                 )
             )
         )
@@ -131,17 +144,17 @@ class WhatIfView:
                 )
             )
             return
-        evaluation = shown.evaluation
+        evaluation, size = shown.evaluation, size_of_case(self._session.picture.case)
         numbers = (
             ("f₁", number_text(evaluation.objectives.get("f1"), 4)),
             ("f₂", number_text(evaluation.objectives.get("f2"), 4)),
             *(
                 (
                     f"at {name}: Rt, PD",
-                    f"{number_text(1e-3 * item.total_resistance, 0)} kN, "
-                    f"{number_text(1e-6 * item.delivered_power, 2)} MW",
+                    f"{quantity_of(evaluation, f'total_resistance_{number}', size)}, "
+                    f"{quantity_of(evaluation, f'delivered_power_{number}', size)}",
                 )
-                for name, item in zip(conditions_of(evaluation), evaluation.conditions, strict=True)
+                for number, name in enumerate(conditions_of(evaluation), 1)
             ),
         )
         facts = joined(fill("<span>{}</span><span>{}</span>", name, text) for name, text in numbers)

@@ -11,6 +11,7 @@ from dataclasses import dataclass
 
 from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import ConditionResult, DesignNumbers, InitialNumbers
+from hpsop_core.units import written
 
 FEASIBILITY_TOLERANCE = 1e-6
 """A design whose every g is at most this is feasible: an optimum on a limit must not fail by rounding."""
@@ -165,7 +166,7 @@ def _engine_asked(case: Case) -> str:
     if rating is None:
         return ""
     torque = "" if rate is None else f", its torque at {rate:.1f} rpm and 105 % of that rate"
-    return f"every condition within the engine's {1e-6 * rating:.2f} MW{torque}"
+    return f"every condition within the engine's {written(1e-6 * rating, 'MW', 2)}{torque}"
 
 
 def _form(design: DesignNumbers, initial: InitialNumbers, case: Case) -> float:

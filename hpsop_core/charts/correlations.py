@@ -9,7 +9,7 @@ import numpy as np
 
 from hpsop_core.case.case import Case
 from hpsop_core.markup import Markup, escape, fill
-from hpsop_core.quantities import OBJECTIVES, Quantity, all_quantities, condition_names, free_variables
+from hpsop_core.quantities import OBJECTIVES, Quantity, free_variables, quantities_of_case
 from hpsop_core.typing_aliases import Array
 
 LEAST_FOR_CORRELATION = 10
@@ -58,7 +58,7 @@ def rank_correlations(case: Case, column: Callable[[Quantity], Array | None]) ->
         case: whose variables and conditions.
         column: a quantity's values (n,) over the designs, NaN where there is none; None if it is not kept.
     """
-    everything = {quantity.key: quantity for quantity in all_quantities(condition_names(case))}
+    everything = {quantity.key: quantity for quantity in quantities_of_case(case)}
     results = (*OBJECTIVES, *(everything[key] for key in _RESULTS if key in everything))
     free = tuple(free_variables(case))
     columns = {quantity.key: column(quantity) for quantity in (*free, *results)}

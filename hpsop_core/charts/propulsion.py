@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 
 import numpy as np
@@ -16,6 +17,7 @@ from hpsop_core.evaluation.hull_answer import ResistancePoint
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import fill
 from hpsop_core.typing_aliases import Array
+from hpsop_core.units import axis_unit, written
 
 _EMPTY_RANGE = (0.16, 0.3)
 _FEW_CONDITIONS = 3
@@ -99,6 +101,12 @@ def _name_curves(plot: Plot, drawn: Sequence[Curves]) -> None:
         plot.text(float(j[place]), height, word, dx=dx, dy=dy)
 
 
+def _force_unit(forces: Sequence[float], published: Sequence[Published]) -> tuple[str, float]:
+    """The unit of an axis of forces (N), and what a newton is in it; published points stand in MN."""
+    finite = [abs(force) for force in forces if np.isfinite(force)]
+    return axis_unit("force", math.inf if published or not finite else max(finite))
+
+
 def resistance_chart(
     designs: Sequence[tuple[Look, Sequence[ResistancePoint], Evaluation]],
     which: str,
@@ -117,15 +125,17 @@ def resistance_chart(
             the legend then has the Froude numbers.
     """
     name = f"{which}_resistance"
+    # both charts, which stand above each other, in the unit of the total
+    unit, scale = _force_unit([point.total_resistance for _, points, _ in designs for point in points], published)
     curves = [
         (
             np.array([point.speed / KNOT if knots else point.froude_number for point in points]),
-            np.array([1e-6 * getattr(point, name) for point in points]),
+            np.array([scale * getattr(point, name) for point in points]),
         )
         for _, points, _ in designs
     ]
     top = padded([*(v for _, force in curves for v in force), *(v for item in published for v in item.y), 0.0])[1]
-    word = "wave resistance R_W [MN]" if which == "wave" else "total resistance R_T [MN]"
+    word = f"wave resistance R_W [{unit}]" if which == "wave" else f"total resistance R_T [{unit}]"
     x = _speed_axis([speed for speed, _ in curves], knots)
     plot = Plot(sheet.width, sheet.height, x, Axis(word, (0.0, top), 5), margins=(48, 12, 8, 34), style=sheet.style)
     if not designs:
@@ -135,8 +145,8 @@ def resistance_chart(
         plot.line(speed, force, look.css, name=look.name, key=key, curved=True)
         for condition in evaluation.conditions:
             value = getattr(condition, name)
-            title = f"{look.name}, {_condition_words(condition)}: {1e-3 * value:,.0f} kN"
-            plot.mark(_place(condition, knots), 1e-6 * value, "circle", 3.6, look.role, title=title)
+            title = f"{look.name}, {_condition_words(condition)}: {written(1e-3 * value, 'kN', 0)}"
+            plot.mark(_place(condition, knots), scale * value, "circle", 3.6, look.role, title=title)
     draw_published(plot, published)
     return plot
 
@@ -152,11 +162,14 @@ def thrust_chart(
     Arguments as of ``resistance_chart``.
     """
     # high enough for the operating points with air above; the steep ends of the curves may leave the chart
-    points = [1e-6 * condition.thrust for _, _, evaluation in designs for condition in evaluation.conditions]
-    top = 1.5 * max([*points, *(value for item in published for value in item.y)], default=1.0)
+    points = [condition.thrust for _, _, evaluation in designs for condition in evaluation.conditions]
+    unit, scale = _force_unit(points, published)
+    top = 1.5 * max(
+        [*(scale * force for force in points), *(value for item in published for value in item.y)], default=1.0
+    )
     speeds = [curves.speed / KNOT if knots else curves.froude_number for _, curves, _ in designs]
     x = _speed_axis(speeds, knots)
-    y = Axis("thrust T [MN]", (0.0, top), 5)
+    y = Axis(f"thrust T [{unit}]", (0.0, top), 5)
     plot = Plot(sheet.width, sheet.height, x, y, margins=(48, 12, 8, 34), style=sheet.style)
     if not designs:
         plot.message(WAITING)
@@ -164,15 +177,17 @@ def thrust_chart(
         speed, main = speeds[index], index == len(designs) - 1
         words = f"required, {look.name}"
         key = f"{words}{_froude_words(evaluation)}" if knots else words
-        plot.line(speed, 1e-6 * curves.required, look.css, name=words, key=key, curved=True)
+        plot.line(speed, scale * curves.required, look.css, name=words, key=key, curved=True)
         # the published thrust of a run may have fewer conditions than its curves
         for number, (condition, available) in enumerate(zip(evaluation.conditions, curves.available, strict=False), 1):
             rate = f"{condition.rotation_rate_rpm:.1f} rpm"
-            force = 1e-6 * available
+            force = scale * available
             name = f"available at {rate}, {look.name}"
             plot.line(speed, force, f"{look.role} dot thin", name=name, curved=True)
-            title = f"{look.name}, {_condition_words(condition)}: T {1e-3 * condition.thrust:,.0f} kN at {rate}"
-            plot.mark(_place(condition, knots), 1e-6 * condition.thrust, "circle", 3.6, look.role, title=title)
+            title = (
+                f"{look.name}, {_condition_words(condition)}: T {written(1e-3 * condition.thrust, 'kN', 0)} at {rate}"
+            )
+            plot.mark(_place(condition, knots), scale * condition.thrust, "circle", 3.6, look.role, title=title)
             within = np.flatnonzero(np.isfinite(force) & (force < 0.93 * top))
             if main and within.size:
                 # below its falling end it crosses nothing of its own

@@ -27,7 +27,8 @@ from hpsop_core.evaluation.levels import TRUTH
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.geometry.hull.input.options import ReadOptions
 from hpsop_core.model_test import MODEL_DIAMETER, MODEL_ROTATION_RATE, MODEL_VISCOSITY
-from hpsop_core.quantities import OBJECTIVES, SHIP, condition_quantities, conditions_of, standing_on
+from hpsop_core.quantities import SHIP, all_quantities, conditions_of, size_of_design, standing_on
+from hpsop_core.units import Size, written
 
 if TYPE_CHECKING:
     from hpsop_core.case.case import Case
@@ -125,27 +126,30 @@ def print_evaluation(result: Evaluation) -> None:
     print("\n".join(describe_variables(result.variables)))
     if not result.ok:
         return
-    hull, own = result.hull, result.propeller
+    hull, own, size = result.hull, result.propeller, size_of_design(result)
+    metres, volume, surface = size.unit("m", 2).decimals, size.unit("m³", 0).decimals, size.unit("m²", 0).decimals
     print(
-        f"hull: Lpp {hull.length:.2f} m, B {hull.breadth:.2f} m, d {hull.draft:.2f} m, "
-        f"CB {hull.block_coefficient:.4f}, volume {hull.displaced_volume:,.0f} m3, S {hull.wetted_surface:,.0f} m2, "
+        f"hull: Lpp {hull.length:.{metres}f} m, B {hull.breadth:.{metres}f} m, d {hull.draft:.{metres}f} m, "
+        f"CB {hull.block_coefficient:.4f}, volume {hull.displaced_volume:,.{volume}f} m3, "
+        f"S {hull.wetted_surface:,.{surface}f} m2, "
         f"LCB {100.0 * (hull.longitudinal_centre_of_buoyancy / hull.length - 0.5):+.2f} % of Lpp from midship "
-        f"({hull.longitudinal_centre_of_buoyancy:.2f} m from AP)"
+        f"({hull.longitudinal_centre_of_buoyancy:.{metres}f} m from AP)"
     )
     print(
-        f"propeller: D {own.diameter:.3f} m, Z {own.blade_count}, P/D {own.pitch_diameter_ratio_07R:.4f} at 0.7 R, "
-        f"EAR {own.expanded_area_ratio:.3f}, D/d {own.diameter / hull.draft:.3f}, "
-        f"tip clearance to the hull {own.tip_clearance:.2f} m"
+        f"propeller: D {own.diameter:.{max(3, metres)}f} m, Z {own.blade_count}, "
+        f"P/D {own.pitch_diameter_ratio_07R:.4f} at 0.7 R, EAR {own.expanded_area_ratio:.3f}, "
+        f"D/d {own.diameter / hull.draft:.3f}, "
+        f"tip clearance to the hull {own.tip_clearance:.{metres}f} m"
     )
     if hull.booked_volume is not None:
         print(f"booked (affine form): CB {hull.booked_block_coefficient:.4f}, volume {hull.booked_volume:,.0f} m3")
-    ship = [(item, item.value(result)) for item in SHIP]
+    ship = [(item, item.value(result)) for item in (item.sized(size) for item in SHIP)]
     print("ship: " + ", ".join(f"{item.symbol.replace('_', ' ')} {item.text(result)} {item.unit}"
                                for item, value in ship if value is not None))  # fmt: skip
-    _print_conditions(result.conditions)
+    _print_conditions(result.conditions, size)
     for c in result.conditions:
         if c.engine_load is not None:
-            fuel = "" if c.fuel_rate is None else f", fuel {3.6 * c.fuel_rate:.3f} t/h"
+            fuel = "" if c.fuel_rate is None else f", fuel {written(3.6 * c.fuel_rate, 't/h', 3)}"
             print(f"engine at {c.speed / KNOT:.2f} kn: {100.0 * c.engine_load:.1f} % of its rating{fuel}")
     for c in result.conditions:
         if c.blade_cavitation_margin is not None:
@@ -174,7 +178,7 @@ def _print_errors(result: Evaluation) -> None:
         return
     asked = [
         quantity
-        for quantity in (*OBJECTIVES, *SHIP, *condition_quantities(conditions_of(result)))
+        for quantity in all_quantities(conditions_of(result), size_of_design(result))
         if quantity.key in ("f1", "f2", "fuel_per_hour")
         or quantity.key.rpartition("_")[0] in ("total_resistance", "delivered_power", "rotation_rate_rpm")
     ]
@@ -205,24 +209,29 @@ _RESISTANCE_PARTS = (
 """Symbol and name; all but the last add up to it."""
 
 
-def _print_conditions(conditions: Sequence[ConditionResult]) -> None:
+def _print_conditions(conditions: Sequence[ConditionResult], size: Size) -> None:
     """Resistance in its parts, which add up, and propulsion."""
+    force, power = size.unit("kN", 1), size.unit("MW", 2)
     print_table(
-        ["Fn", "V m/s", "V kn", *(f"{symbol} kN" for symbol, _ in _RESISTANCE_PARTS)],
+        ["Fn", "V m/s", "V kn", *(f"{symbol} {force.symbol}" for symbol, _ in _RESISTANCE_PARTS)],
         [
             [f"{c.froude_number:.4f}", f"{c.speed:.3f}", f"{c.speed / KNOT:.2f}"]
-            + [f"{(getattr(c, name) or 0.0) / 1e3:.1f}" for _, name in _RESISTANCE_PARTS]
+            + [f"{1e-3 * force.factor * (getattr(c, name) or 0.0):.{force.decimals}f}" for _, name in _RESISTANCE_PARTS]
             for c in conditions
         ],
     )
-    header = ["Fn", "w", "t", "J", "n rpm", "KT", "10KQ", "eta0", "etaH", "etaR", "etaD", "PE MW", "PD MW", "PB MW"]
+    header = ["Fn", "w", "t", "J", "n rpm", "KT", "10KQ", "eta0", "etaH", "etaR", "etaD"]
+    header += [f"{symbol} {power.symbol}" for symbol in ("PE", "PD", "PB")]
     rows = [
         [
             f"{c.froude_number:.4f}", f"{c.wake_fraction:.4f}", f"{c.thrust_deduction:.4f}",
             f"{c.advance_coefficient:.4f}", f"{c.rotation_rate_rpm:.2f}", f"{c.thrust_coefficient:.4f}",
             f"{10 * c.torque_coefficient:.4f}", f"{c.open_water_efficiency:.4f}", _digits(c.hull_efficiency),
             _digits(c.relative_rotative_efficiency), _digits(c.propulsive_efficiency),
-            *(f"{(power or 0.0) / 1e6:.2f}" for power in (c.effective_power, c.delivered_power, c.brake_power)),
+            *(
+                f"{1e-6 * power.factor * (own or 0.0):.{power.decimals}f}"
+                for own in (c.effective_power, c.delivered_power, c.brake_power)
+            ),
             f"{c.required_expanded_area_ratio:.3f}",
         ]
         for c in conditions

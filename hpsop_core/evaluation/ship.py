@@ -14,6 +14,7 @@ from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.machinery.energy_efficiency import MAIN_ENGINE_LOAD, attained_eedi, speed_at_power
 from hpsop_core.machinery.engine import Engine
+from hpsop_core.units import written
 
 # No design of a search saves half of the initial design's power: bounds reach some ten per cent around it.
 _HOPELESS = 2.0
@@ -140,7 +141,8 @@ def check_engine(case: Case, initial: DesignNumbers) -> None:
         enough = digit * math.ceil(needed / digit)  # rounded up: what is said to be enough is
         raise InputError(
             f"engine: maximum_continuous_rating {rating:g} W is smaller than any design needs: the initial one takes "
-            f"{needed:.4g} MW at {speed / KNOT:.2f} kn; state at least {1e6 * enough:.2g} W or lower the speeds"
+            f"{written(needed, 'MW', 2)} at {speed / KNOT:.2f} kn; state at least {1e6 * enough:.2g} W or lower the "
+            "speeds"
         )
 
 
@@ -189,7 +191,7 @@ def ship_warnings(case: Case, design: DesignNumbers) -> list[str]:
     for condition in design.conditions:
         load, rate = condition.engine_load or 0.0, condition.rotation_rate_rpm / 60.0
         power, speed = load * engine.maximum_continuous_rating, f"at {condition.speed / KNOT:.2f} kn"
-        needed = f"{speed}: {1e-6 * power:.2f} MW"
+        needed = f"{speed}: {written(1e-6 * power, 'MW', 2)}"
         if load > 1.0:
             warnings.append(f"{needed} are more than the engine's rating; the consumption is extrapolated")
         elif engine.excess(power, rate) > 0.0:

@@ -16,7 +16,7 @@ from hpsop_core.evaluation.levels import level_of
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.evaluation.ship import engine_of
 from hpsop_core.markup import Markup, fill, joined, one_line
-from hpsop_core.quantities import change_text, number_text, standing_on, violated
+from hpsop_core.quantities import change_text, number_text, size_of_case, standing_on, violated
 from hpsop_core.report.data import ReportData
 from hpsop_core.report.html_page import (
     Section,
@@ -41,6 +41,7 @@ from hpsop_core.report.tables import (
 from hpsop_core.report.words import assumptions, trust
 from hpsop_core.runs.reader import RunReader
 from hpsop_core.runs.records import DesignRecord, front_families
+from hpsop_core.units import Size
 from hpsop_core.version import __version__
 from hpsop_core.writing import refuse_to_replace, write_whole
 
@@ -158,8 +159,14 @@ def _kept(value: float, decimals: int, unit: str = "") -> str:
     return f"{number_text(value, decimals)} {unit}".strip().replace(" ", "\xa0")
 
 
+def _sized(value: float, decimals: int, unit: str, size: Size) -> str:
+    """The same of a number in a ship's unit, in the unit of this size of ship."""
+    own = size.unit(unit, decimals)
+    return _kept(own.factor * value, own.decimals, own.symbol)
+
+
 def _in_short(data: ReportData, initial: Evaluation, record: DesignRecord) -> Markup:
-    chosen = record.evaluation
+    chosen, size = record.evaluation, size_of_case(data.case)
     lines: list[Words] = []
     for before, after in zip(initial.conditions, chosen.conditions, strict=False):
         line = fill(
@@ -167,10 +174,10 @@ def _in_short(data: ReportData, initial: Evaluation, record: DesignRecord) -> Ma
             "open-water efficiency {} instead of {}.",
             _kept(after.froude_number, 3),
             _kept(after.speed / 0.514444, 1, "kn"),
-            _kept(1e-6 * after.delivered_power, 2, "MW"),
-            _kept(1e-6 * before.delivered_power, 2, "MW"),
+            _sized(1e-6 * after.delivered_power, 2, "MW", size),
+            _sized(1e-6 * before.delivered_power, 2, "MW", size),
             change_text(before.delivered_power, after.delivered_power, 1),
-            _kept(1e-3 * after.total_resistance, 0, "kN"),
+            _sized(1e-3 * after.total_resistance, 0, "kN", size),
             change_text(before.total_resistance, after.total_resistance, 0),
             _kept(after.open_water_efficiency, 3),
             _kept(before.open_water_efficiency, 3),
@@ -184,9 +191,9 @@ def _in_short(data: ReportData, initial: Evaluation, record: DesignRecord) -> Ma
         hull, before_hull = chosen.hull, initial.hull
         line = fill(
             "<strong>Its hull really displaces {}</strong> ({}); the case only books {} ({}).",
-            _kept(hull.displaced_volume, 0, "m³"),
+            _sized(hull.displaced_volume, 0, "m³", size),
             change_text(before_hull.displaced_volume, hull.displaced_volume, 0),
-            _kept(booked, 0, "m³"),
+            _sized(booked, 0, "m³", size),
             change_text(before_hull.booked_volume, booked, 0),
         )
         if hull.displaced_volume < booked:

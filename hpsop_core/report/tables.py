@@ -28,6 +28,7 @@ from hpsop_core.quantities import (
     condition_quantities,
     free_variables,
     number_text,
+    size_of_case,
     variable_quantities,
 )
 from hpsop_core.report.html_page import Words, facts, paragraph, table, unit_html
@@ -49,11 +50,13 @@ _ONLY_DIFFERENCES = ("blade_cavitation_margin", "f1", "f2")
 
 def result_quantities(case: Case) -> tuple[Quantity, ...]:
     """The rows of the result table, in their order."""
-    conditions = condition_quantities(condition_names(case))
+    size = size_of_case(case)
+    conditions = condition_quantities(condition_names(case), size)
     kept = tuple(q for q in conditions if q.key.rsplit("_", 1)[0] in _IN_RESULT)
     variables = variable_quantities(case)
     pitch = tuple(dataclasses.replace(q, group="Propeller") for q in variables if q.key == "pitch_ratio")
-    return (*OBJECTIVES, *kept, *HULL, *SHIP, *PROPELLER, *pitch, *CONSTRAINTS)
+    ship = tuple(item.sized(size) for item in (*HULL, *SHIP, *PROPELLER))
+    return (*OBJECTIVES, *kept, *ship, *pitch, *CONSTRAINTS)
 
 
 def _named(quantity: Quantity, case: Case) -> Markup:
@@ -121,10 +124,10 @@ def front_table(case: Case, front: Sequence[DesignRecord], marks: Mapping[int, s
     """The whole front: objectives, free variables, main numbers of each condition."""
     free = free_variables(case)
     names = ("total_resistance", "open_water_efficiency", "delivered_power")
-    per_condition = [
-        quantity for quantity in condition_quantities(condition_names(case)) if quantity.key.rsplit("_", 1)[0] in names
-    ]
-    length = [quantity for quantity in HULL if quantity.key == "length"]
+    size = size_of_case(case)
+    conditions = condition_quantities(condition_names(case), size)
+    per_condition = [quantity for quantity in conditions if quantity.key.rsplit("_", 1)[0] in names]
+    length = [quantity.sized(size) for quantity in HULL if quantity.key == "length"]
     columns = [*OBJECTIVES, *free, *length, *per_condition]
     belongs, _ = front_families(front)
     header: list[Words] = ["design", ""]

@@ -14,6 +14,7 @@ from hpsop_core.evaluation.levels import FAST, TRUTH, level_of
 from hpsop_core.markup import Markup, fill, joined, one_line, symbol_html
 from hpsop_core.quantities import number_text, variable_quantity
 from hpsop_core.report.html_page import Words, bullets, facts, table, unit_html
+from hpsop_core.units import written
 
 _FORM: dict[str, Words] = {
     "shift": "Length, breadth and draft scale the parent hull; the displacement asked for is then reached by moving "
@@ -179,12 +180,12 @@ def _ship(case: Case) -> list[tuple[str, Words]]:
         height = number_text(loading.centre_of_gravity_height, 2)
         found.append(("centre of gravity", f"{height} m above the baseline, in proportion to depth"))
     if loading.lightship_mass is not None:
-        mass = number_text(1e-3 * loading.lightship_mass, 0)
-        found.append(("lightship", f"{mass} t, in proportion to L B depth"))
+        mass = written(1e-3 * loading.lightship_mass, "t", 0)
+        found.append(("lightship", f"{mass}, in proportion to L B depth"))
     if engine.maximum_continuous_rating is not None:
         rate = engine.rated_rotation_rate_rpm
         at = "" if rate is None else f" at {number_text(rate, 1)} rpm"
-        found.append(("engine", f"{number_text(1e-6 * engine.maximum_continuous_rating, 2)} MW{at}"))
+        found.append(("engine", f"{written(1e-6 * engine.maximum_continuous_rating, 'MW', 2)}{at}"))
     if engine.load_fractions:
         grams = [3.6e9 * kilograms_per_joule(value) for value in engine.specific_fuel_consumptions]
         pairs = zip(engine.load_fractions, grams, strict=True)

@@ -17,7 +17,7 @@ from explorer.state.shown import Shown
 from explorer.views.tables import design_card, many_table
 from hpsop_core.case.case import KNOT, Case
 from hpsop_core.evaluation.result import Evaluation, Failed
-from hpsop_core.quantities import change_text, number_text
+from hpsop_core.quantities import all_quantities, change_text, number_text
 from tests.two_speeds import stated_case
 
 Array = NDArray[np.float64]
@@ -85,7 +85,7 @@ def test_each_pinned_design_is_compared_at_its_own_level(initial: Evaluation):
     table = many_table(
         {1: Shown("Initial design", initial), 2: Shown("Initial design", base)},
         [Shown("Design 7", initial), Shown("Design 8", other)],
-        ("Fn 0.22", "Fn 0.27"),
+        all_quantities(("Fn 0.22", "Fn 0.27")),
     )
     row = re.search(r'<tr data-compare="f1">(.*?)</tr>', table)
     assert row

@@ -29,7 +29,7 @@ from hpsop_core.charts.propulsion import open_water_chart
 from hpsop_core.evaluation.fields import WaveField, blade_pressure, waves
 from hpsop_core.evaluation.result import Ok
 from hpsop_core.markup import Markup
-from hpsop_core.quantities import condition_names, condition_quantities
+from hpsop_core.quantities import condition_names, condition_quantities, quantities_of_case
 
 CASE = BASE
 
@@ -74,7 +74,7 @@ def test_units_of_the_pages_numbers(initial: Ok) -> None:
 
 def test_the_table_has_each_design_in_its_own_column(initial: Ok, other: Ok) -> None:
     table = comparison_table(Shown("Initial design", initial, kind="initial"), Shown("Design 7", other),
-                             condition_names(CASE))  # fmt: skip
+                             quantities_of_case(CASE))  # fmt: skip
     row = re.search(r'<tr data-quantity="propeller_diameter">(.*?)</tr>', table)
     assert row
     cells = re.findall(r"<td[^>]*>([^<]*)</td>", row.group(1))

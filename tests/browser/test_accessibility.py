@@ -37,6 +37,13 @@ def test_no_panel_has_a_serious_finding(page):
     page.wait_for_selector(".hpsop-link:visible")
     assert _findings(page) == [], "a run's name, and the link"
     page.keyboard.press("Escape")
+    press(page, "help")
+    page.wait_for_selector(".card.help:visible")
+    assert _findings(page, ".hpsop-overlay-help") == [], "help"
+    press(page, "tour", "0")
+    page.wait_for_selector(".card.tour:visible")
+    assert _findings(page, ".hpsop-overlay-tour") == [], "tour"
+    press(page, "tour", "end")
     choose_tab(page, "Charts")
     assert _findings(page) == [], "Charts"
     for name in sorted(page.evaluate("[...document.querySelectorAll('[data-act=tab]')].map(node => node.dataset.arg)")):

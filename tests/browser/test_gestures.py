@@ -369,6 +369,14 @@ def test_charts_of_the_run_are_chosen_moved_and_read(page, session):
     page.mouse.up()
     wait_until(lambda: session.charts.axes, 20, "another order of the axes")
     assert session.charts.axes[0] == "breadth_to_draft"
+    # or stepped by the arrow keys, which stay with it
+    page.locator("[data-axis=length_to_breadth]").focus()
+    place = session.charts.axes.index("length_to_breadth")
+    page.keyboard.press("ArrowRight")
+    wait_until(lambda: session.charts.axes.index("length_to_breadth") == place + 1, 20, "an axis a place on")
+    page.wait_for_function("() => document.activeElement.dataset.axis === 'length_to_breadth'")
+    page.keyboard.press("ArrowLeft")
+    wait_until(lambda: session.charts.axes.index("length_to_breadth") == place, 20, "the axis back")
     # a chart is read at the pointer, and the one over the same quantity with it
     press(page, "tab", "convergence")
     page.locator("svg[data-chart=convergence]").scroll_into_view_if_needed()
@@ -387,8 +395,13 @@ def test_steps_are_taken_back_and_a_link_opens_the_same(page, session, explorer)
     thumb.focus()
     page.keyboard.press("PageUp")
     wait_until(lambda: draft.value("bounds", "length_to_breadth") != before, 20, "another bound")
+    moved = draft.value("bounds", "length_to_breadth")
     press(page, "undo")
     wait_until(lambda: draft.value("bounds", "length_to_breadth") == before, 20, "the bound as it was")
+    page.keyboard.press("Control+Shift+Z")
+    wait_until(lambda: draft.value("bounds", "length_to_breadth") == moved, 20, "the bound made again")
+    page.keyboard.press("Control+z")
+    wait_until(lambda: draft.value("bounds", "length_to_breadth") == before, 20, "the bound as it was, by a key")
     choose_tab(page, "What-if")
     first = session.selected
     drag_slider(page, "L/B", 0.3)
@@ -397,6 +410,12 @@ def test_steps_are_taken_back_and_a_link_opens_the_same(page, session, explorer)
     wait_until(lambda: session.selected.key == first.key, 20, "the design before it")
     press(page, "whatif_turn", "again")
     wait_until(lambda: session.selected.kind == "whatif", 20, "the what-if again")
+    # the keys mean the what-if while one is at work there, and leave the settings alone
+    page.keyboard.press("Control+z")
+    wait_until(lambda: session.selected.key == first.key, 20, "the design before it, by a key")
+    page.keyboard.press("Control+y")
+    wait_until(lambda: session.selected.kind == "whatif", 20, "the what-if again, by a key")
+    assert draft.value("bounds", "length_to_breadth") == before
     wanted = session.selected.key
     press(page, "camera", "plan")
     press(page, "link")
@@ -419,6 +438,26 @@ def test_steps_are_taken_back_and_a_link_opens_the_same(page, session, explorer)
     other.close()
     press(page, "camera", "perspective")
     choose_tab(page, "Design")
+
+
+def test_a_view_that_fails_says_so_and_goes_on(page, session, explorer, monkeypatch):
+    choose_tab(page, "Design")
+    first = explorer.services.designs.first()
+    session.select(first)
+    page.wait_for_selector('[data-selected="initial"]')
+
+    def broken(*_arguments):
+        raise ValueError("no table")
+
+    monkeypatch.setattr("explorer.views.design_view.comparison_table", broken)
+    session.select(explorer.services.designs.shown(session.picture.generations[-1].front[0]))
+    page.locator("[data-failed]").get_by_text("no table").wait_for()
+    # what stood there is not shown as what stands now
+    assert page.locator("[data-selected]").count() == 0
+    monkeypatch.undo()
+    session.select(first)
+    page.wait_for_selector('[data-selected="initial"]')
+    assert page.locator("[data-failed]").count() == 0
 
 
 def test_reload_comes_back(page, session, explorer):

@@ -136,6 +136,28 @@ def test_a_thumb_is_dragged_and_the_readout_follows(page, explorer, draft):
     assert 6.5 < low < high == 8.5
 
 
+def test_what_is_shown_is_of_the_case_as_it_is_set_up_now(page, explorer, draft):
+    session = session_of(explorer)
+    before = session.selected
+    assert before.kind == "initial" and "length_to_breadth" not in before.evaluation.active_bounds
+    page.wait_for_selector("[data-standing]", state="attached")
+    # a bound that reaches the initial design: it stands on it at once
+    own = before.evaluation.variables.length_to_breadth
+    explorer.settings.set_bounds("length_to_breadth", (own, 8.5))
+    page.locator("[data-standing]:visible").get_by_text("L/B on its lower bound").wait_for()
+    choose_tab(page, "What-if")
+    page.locator("label:visible").get_by_text("L/B ↓", exact=True).wait_for()
+    choose_tab(page, "Design")
+    press(page, "undo")
+    page.locator("[data-standing]:visible").get_by_text("L/B on its lower bound").wait_for(state="detached")
+    # other speeds: its numbers are solved anew
+    froude = session.selected.evaluation.conditions[0].froude_number
+    explorer.settings.set_field("conditions", "froude_numbers", "0.2, 0.27")
+    wait_until(lambda: session.selected.evaluation.conditions[0].froude_number < froude, 20, "the initial at Fn 0.2")
+    press(page, "undo")
+    wait_until(lambda: session.selected.evaluation.conditions[0].froude_number == froude, 20, "the speeds as before")
+
+
 def test_a_bound_is_stepped_by_the_arrow_keys_and_a_wrong_one_goes_back(page, explorer, draft, told):
     low, high = draft.value("bounds", "breadth_to_draft")
     box = page.locator('[data-variable="breadth_to_draft"] input').first
@@ -158,19 +180,44 @@ def test_a_bound_is_stepped_by_the_arrow_keys_and_a_wrong_one_goes_back(page, ex
     wait_until(lambda: not draft.changed("bounds", "breadth_to_draft"), 20, "the preset's bound")
 
 
+def _front(explorer) -> list:
+    """Evaluations of the newest front."""
+    designs = explorer.services.designs
+    return [designs.shown(number).evaluation for number in explorer.state.picture.generations[-1].front]
+
+
 def test_the_saved_case_gives_the_same_front(page, explorer, draft, tmp_path):
     """TOML from the page, run by the command with another number of workers: the same bits."""
     # the TOML must carry what was set on the page, also numbers with many digits
     assert draft.count() >= 2
     choose_tab(page, "Case")
+    # another question, asked with the mouse: power against displacement, of ships no longer than 370 m
+    for name, words in (("first", "delivered_power"), ("second", "displacement")):
+        page.locator(f'[id="{explorer.settings._widgets[("objectives", name)]._impl.uuid}"]').click()
+        page.get_by_role("option", name=words, exact=True).click()
+        wait_until(
+            lambda name=name, words=words: draft.value("objectives", name) == words, 20, f"the objective {words}"
+        )
+    page.get_by_text("Constraints", exact=True).first.click()
+    replace_text(page, field(page, explorer, "constraints", "greatest_length"), "370")
+    wait_until(lambda: draft.value("constraints", "greatest_length") == 370.0, 20, "the greatest length")
+    page.get_by_text("Constraints", exact=True).first.click()
+    page.wait_for_selector('svg[data-chart=pareto]:has-text("f₁ = delivered power")')
     with page.expect_download() as waiting:
         page.get_by_role("button", name="Save this case as TOML").click()
     saved = tmp_path / "saved.toml"
     waiting.value.save_as(saved)
     assert load_case(saved) == draft.case()
     choose_tab(page, "Design space")
+    press(page, "follow_best")
     press(page, "run_start")
     wait_until(lambda: explorer.state.picture.status == "finished", 90, "the run of three generations")
+    # what is followed is the newest compromise, in the numbers and in the chart
+    best = explorer.state.picture.compromise
+    page.wait_for_selector(f'[data-selected="{best}"]', state="attached")
+    page.locator("[data-headline]").get_by_text("delivered power").first.wait_for()
+    assert all(shown.hull.length <= 370.0 + 1e-6 for shown in _front(explorer))
+    press(page, "follow_best")
     (mine,) = explorer.folder.glob("*.hpsop")
     theirs = tmp_path / "command.hpsop"
     command = Path(sys.executable).with_name("hpsop")

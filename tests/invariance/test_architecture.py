@@ -29,6 +29,7 @@ ORDER = (
     "version",
     "model_test",
     "markup",
+    "units",
     "one_thread",
     "kept_memory",
     "compiled",

@@ -17,6 +17,7 @@ from explorer.views.pareto.chart import ParetoChart
 from explorer.views.tables import design_card
 from explorer.views.zooming import Zooming
 from hpsop_core.markup import Markup
+from hpsop_core.quantities import size_of_case
 
 # a click so near to the initial design's mark means it, px
 _NEAR = 14.0
@@ -92,7 +93,8 @@ class ParetoPicking:
             return
         crowded = len(found) > 1
         more = soft(f"{len(found)} designs coincide here: click again for the next.") if crowded else NOTHING
-        self._tip.show(tooltip("pareto", design_card(shown) + more + self._family(found[0]), self._serial))
+        card = design_card(shown, size_of_case(self._session.picture.case))
+        self._tip.show(tooltip("pareto", card + more + self._family(found[0]), self._serial))
 
     def _family(self, design_id: int) -> Markup:
         """How many designs of the newest front cannot be told from this one."""

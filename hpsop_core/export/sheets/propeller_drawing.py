@@ -9,6 +9,7 @@ from hpsop_core.export.sheets.paper import HEIGHT, MARGIN, Sheet, View, standard
 from hpsop_core.geometry.propeller.sections import cosine_chord_fractions
 from hpsop_core.geometry.propeller.surface import blade_points, section_points
 from hpsop_core.typing_aliases import Array
+from hpsop_core.units import written
 
 _SECTIONS = (0.3, 0.4, 0.5, 0.6, 0.7, 0.8, 0.9, 0.95)
 _EDGES = np.array([0.0, 1.0])
@@ -102,7 +103,7 @@ def _particulars(design: LeavingDesign) -> list[tuple[str, str]]:
         ("Hub ratio", f"{propeller.hub_ratio:.4f}"),
         ("Shaft above baseline", f"{design.hull.shaft_height:.3f} m"),
         ("Rate of revolutions", f"{point.rotation_rate_rpm:.2f} 1/min"),
-        ("Delivered power", f"{point.delivered_power / 1e6:.3f} MW"),
+        ("Delivered power", written(point.delivered_power / 1e6, "MW", 3)),
     ]
 
 
