@@ -18,6 +18,8 @@ from hpsop_core.geometry.hull.mesh import Resolution, hull_view_parts
 from hpsop_core.geometry.propeller.mesh import propeller_view_parts
 
 Mesh = tuple[NDArray[np.float64], NDArray[np.int64]]
+# a drawn waterline lies outside the hull by this part of the breadth: 6 cm of a large ship
+_OUTSIDE = 0.0012
 
 
 @dataclass(frozen=True)
@@ -72,7 +74,7 @@ def scene_geometry(case: Case, variables: DesignVariables, near: bool = True) ->
     turn, position = placement[:3, :3].T, placement[:3, 3]
     empty = (np.zeros((3, 3)), np.array([[0, 1, 2]]))
     port = hull.waterline()
-    port = port + np.array([0.0, 0.06])  # just outside the hull, or it would drown in it
+    port = port + np.array([0.0, _OUTSIDE * hull.breadth])  # or it would drown in the hull
     line = np.concatenate([port, port[::-1] * np.array([1.0, -1.0])])
     waterline = np.column_stack([line, np.full(len(line), hull.draft)])
     underwater, above = parts.get("underwater", empty), parts.get("topsides", empty)

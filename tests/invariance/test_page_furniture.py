@@ -38,6 +38,17 @@ def test_the_boxes_stand_on_the_deck_of_every_design(ships):
         assert low[:, 2].min() >= ship.deck[0][:, 2].min() - 1e-6
 
 
+def test_a_model_of_the_form_is_furnished_by_its_own_size(case: Case, ships):
+    model = case.replaced("initial", length=6.0, breadth=6.0 * 51.0 / 355.0, draft=6.0 * 14.5 / 355.0, diameter=0.152)
+    small, ship = scene_geometry(model, model.initial.variables), ships[0]
+    scale = 355.0 / 6.0
+    high = [(item.boxes.centres + 0.5 * item.boxes.sides)[:, 2].max() for item in (small, ship)]
+    # as high over the keel as the large ship's, in parts of the length, within what two models' scales differ
+    assert 0.5 < scale * high[0] / high[1] < 2.0
+    # and the waterline lies as near to the hull
+    assert scale * small.waterline[:, 1].max() == pytest.approx(ship.waterline[:, 1].max(), rel=1e-6)
+
+
 def test_paint_moves_with_the_hull_and_keeps_its_faces(ships):
     for part in ("underwater", "topsides", "deck", "boot_top", "rudder"):
         first, second = (getattr(ship, part) for ship in ships)
