@@ -7,6 +7,7 @@ from dataclasses import dataclass, replace
 
 from explorer.state.shown import Shown
 from hpsop_core.case.case import KNOT, Case
+from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.evaluation.coverage import KEPT, LIMIT, UNCOVERED, VIOLATED, Standing, standings
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import Markup, fill, joined
@@ -15,6 +16,8 @@ from hpsop_core.quantities import change_text, number_text, size_of_case
 from hpsop_core.units import Size
 
 _MOST_CONDITIONS = 2
+# apart by so much of themselves two speeds read the same
+_SAME_SPEED = 1e-3
 # of a number of the usual order
 _DIGITS = 3
 _STATE_WORDS = {KEPT: "kept", LIMIT: "at its limit", VIOLATED: "violated", UNCOVERED: "not covered"}
@@ -68,14 +71,14 @@ def _displacement(density: float) -> Callable[[Evaluation], float | None]:
     return lambda item: 1e-3 * density * item.hull.displaced_volume if item.ok else None
 
 
-def _lines(evaluation: Evaluation, density: float) -> list[_Line]:
-    conditions = evaluation.conditions
+def _lines(evaluation: Evaluation, case: Case) -> list[_Line]:
+    conditions, froude = evaluation.conditions, case.conditions.speed == "froude"
     # the fastest decides the engine, the one of the greatest share the fuel
     main = {len(conditions) - 1, max(range(len(conditions)), key=lambda index: conditions[index].weight)}
     chosen = range(len(conditions)) if len(conditions) <= _MOST_CONDITIONS else sorted(main)
     lines = [
         _Line(
-            f"delivered power at {conditions[index].speed / KNOT:.1f} kn",
+            f"delivered power at {_at(conditions[index], froude)}",
             _power(index),
             "MW",
             1,
@@ -86,10 +89,27 @@ def _lines(evaluation: Evaluation, density: float) -> list[_Line]:
     lines += [
         _Line("fuel", _tonnes("fuel_per_hour"), "t/h", 2, error="fuel_per_hour", scale=1e-3),
         _Line("CO₂", _tonnes("carbon_dioxide_per_hour"), "t/h", 2, error="carbon_dioxide_per_hour", scale=1e-3),
-        _Line("displacement", _displacement(density), "t", 0, False),
+        _Line("displacement", _displacement(case.constants.density), "t", 0, False),
         _Line("GM", _hull("metacentric_height"), "m", 2, False),
     ]
     return lines
+
+
+def _at(condition: ConditionResult, froude: bool) -> str:
+    """At fixed Froude numbers each design has speeds of its own."""
+    return f"Fn {condition.froude_number:.4g}" if froude else f"{condition.speed / KNOT:.1f} kn"
+
+
+def _speeds(case: Case, before: Evaluation | None, after: Evaluation) -> Markup:
+    """Where powers are of two speeds, these speeds."""
+    if before is None or case.conditions.speed != "froude":
+        return Markup("")
+    pairs = [
+        f"{first.speed / KNOT:.1f} → {second.speed / KNOT:.1f} kn at Fn {second.froude_number:.4g}"
+        for first, second in zip(before.conditions, after.conditions, strict=False)
+        if abs(second.speed / first.speed - 1.0) > _SAME_SPEED
+    ]
+    return fill('<span class="soft">powers of two speeds: {}<br></span>', ", ".join(pairs)) if pairs else Markup("")
 
 
 def headline_card(case: Case, initial: Shown | None, shown: Shown) -> Markup:
@@ -110,7 +130,7 @@ def headline_card(case: Case, initial: Shown | None, shown: Shown) -> Markup:
     rows = []
     missing = []
     size = size_of_case(case)
-    for line in (line.sized(size) for line in _lines(evaluation, case.constants.density)):
+    for line in (line.sized(size) for line in _lines(evaluation, case)):
         value = line.value(evaluation)
         if value is None:
             missing.append(line.words)
@@ -140,7 +160,7 @@ def headline_card(case: Case, initial: Shown | None, shown: Shown) -> Markup:
             )
         )
     said = fill('<span class="soft">{}: not stated by the case<br></span>', ", ".join(missing)) if missing else ""
-    return fill('<table class="headline">{}</table>{}', joined(rows), said)
+    return fill('<table class="headline">{}</table>{}{}', joined(rows), _speeds(case, before, evaluation), said)
 
 
 def _where(standing: Standing, names: Sequence[str]) -> str:

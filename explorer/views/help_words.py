@@ -9,11 +9,12 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 from explorer.views.chips import box, soft
+from explorer.views.settings_fields import with_labels
 from hpsop_core.case.case import Case
+from hpsop_core.case.constraints import CONSTRAINTS
 from hpsop_core.case.objectives import OBJECTIVES
 from hpsop_core.markup import Markup, fill, joined, symbol_html
 from hpsop_core.quantities import (
-    CONSTRAINTS,
     HULL,
     PROPELLER,
     SHIP,
@@ -127,12 +128,22 @@ def help_card(case: Case) -> Markup:
     objectives = joined(
         fill("<tr><td>{}</td><td>{}</td><td>{}</td></tr>", item.label, item.formula, item.words) for item in OBJECTIVES
     )
+    constraints = joined(
+        fill(
+            '<tr data-word="g_{}"><td>{}</td><td>{}</td><td>{}</td></tr>',
+            item.name,
+            symbol_html(item.symbol),
+            item.label,
+            with_labels(f"{item.meaning} ({item.applies})"),
+        )
+        for item in CONSTRAINTS
+    )
     size = size_of_case(case)
     condition = condition_quantities(("",), size)
     groups = (
         ("Design variables", _rows(variable_quantities(case))),
         ("Objectives (a case chooses two; less is better)", objectives),
-        ("Constraints (g ≤ 0 is kept)", _rows(CONSTRAINTS)),
+        ("Constraints (g ≤ 0 is kept; “…” are fields of the case)", constraints),
         ("Hull", _rows([item.sized(size) for item in HULL])),
         ("Ship", _rows([item.sized(size) for item in SHIP])),
         ("Propeller", _rows([item.sized(size) for item in PROPELLER])),

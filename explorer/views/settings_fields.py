@@ -173,6 +173,15 @@ _LABELS |= {("bounds", name): variable.symbol for name, variable in SEARCH_TABLE
 _SPOKEN = {name: label for (_, name), label in _LABELS.items() if "_" in name}
 
 
+def with_labels(text: str) -> str:
+    """Words that name fields of the case, with these called as on the page: beyond “g₂ D/d from”."""
+
+    def label(name: re.Match[str]) -> str:
+        return f"“{_SPOKEN[name[0]]}”" if name[0] in _SPOKEN else name[0]
+
+    return re.sub(r"\b[a-z0-9]+(?:_[a-z0-9]+)+\b", label, text)
+
+
 def in_words(message: str) -> str:
     """A message of the case with its fields called as on the page: "Population: 2 is outside its limits"."""
     found = re.match(r"(\w+): (\w+)", message)

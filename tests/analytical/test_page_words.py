@@ -161,3 +161,12 @@ def test_the_headline_says_before_and_after_with_the_error(case: Case, answers: 
     change = 100.0 * (after / before - 1.0)
     assert f"{abs(change):.1f} ± 2.0 %" in card
     assert "GM" in card and "not stated by the case" in card
+    assert "powers of two speeds" not in card
+    # at fixed Froude numbers a longer ship sails faster, and its power is of that speed
+    froude = case.replaced("conditions", speed="froude")
+    first, second = answers.initial(froude, 1), answers.evaluate(froude, longer.variables, 1)
+    card = headline_card(froude, Shown("Initial design", first, kind="initial"), Shown("Design 7", second, 7))
+    speeds = [item.conditions[0].speed / KNOT for item in (first, second)]
+    assert speeds[1] > 1.02 * speeds[0]
+    assert "delivered power at Fn 0.22" in card
+    assert f"powers of two speeds: {speeds[0]:.1f} → {speeds[1]:.1f} kn at Fn 0.22" in card
