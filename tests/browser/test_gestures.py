@@ -451,7 +451,7 @@ def test_a_view_that_fails_says_so_and_goes_on(page, session, explorer, monkeypa
 
     monkeypatch.setattr("explorer.views.design_view.comparison_table", broken)
     session.select(explorer.services.designs.shown(session.picture.generations[-1].front[0]))
-    page.locator("[data-failed]").get_by_text("no table").wait_for()
+    page.wait_for_selector('[data-failed]:has-text("no table")')
     # what stood there is not shown as what stands now
     assert page.locator("[data-selected]").count() == 0
     monkeypatch.undo()

@@ -143,13 +143,14 @@ def test_what_is_shown_is_of_the_case_as_it_is_set_up_now(page, explorer, draft)
     page.wait_for_selector("[data-standing]", state="attached")
     # a bound that reaches the initial design: it stands on it at once
     own = before.evaluation.variables.length_to_breadth
+    standing = '[data-standing]:has-text("L/B on its lower bound")'
     explorer.settings.set_bounds("length_to_breadth", (own, 8.5))
-    page.locator("[data-standing]:visible").get_by_text("L/B on its lower bound").wait_for()
+    page.wait_for_selector(standing)
     choose_tab(page, "What-if")
     page.locator("label:visible").get_by_text("L/B ↓", exact=True).wait_for()
     choose_tab(page, "Design")
     press(page, "undo")
-    page.locator("[data-standing]:visible").get_by_text("L/B on its lower bound").wait_for(state="detached")
+    page.wait_for_selector(standing, state="detached")
     # other speeds: its numbers are solved anew
     froude = session.selected.evaluation.conditions[0].froude_number
     explorer.settings.set_field("conditions", "froude_numbers", "0.2, 0.27")
