@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 from numpy.typing import NDArray
 
-from explorer.state.run_picture import ACTIVE, GenerationPicture, RunPicture
+from explorer.state.run_picture import ACTIVE, FAILED, GenerationPicture, RunPicture
 from hpsop_core.charts.axis import Limits, padded
 from hpsop_core.charts.frame import Key
 from hpsop_core.charts.looks import Sheet
@@ -277,9 +277,13 @@ def pareto_chart(picture: RunPicture, background: Plot, marks: Sequence[Mark], k
     plot.keys += keys
     draw_marks(plot, marks)
     if not len(picture.ids) and len(marks) <= 2:
-        begun = picture.status in ACTIVE
-        words = "The first designs are being evaluated:\n" if begun else "No designs yet.\nPress Start: "
-        plot.message(f"{words}each generation's front appears here.", numbers=True)
+        if picture.status == FAILED:
+            words = "The run failed before its first generation."
+        elif picture.status in ACTIVE:
+            words = "The first designs are being evaluated:\neach generation's front appears here."
+        else:
+            words = "No designs yet.\nPress Start: each generation's front appears here."
+        plot.message(words, numbers=True)
     return plot
 
 
