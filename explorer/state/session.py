@@ -188,6 +188,8 @@ class Session:
         chosen = again(selected) if selected is not None else None
         pins = tuple(found for item in self.pins if (found := again(item)) is not None)
         with self.app.lock:
+            if (chosen, pins) == (selected, self.pins):
+                return
             self._selected, self._pins = chosen, pins
         self.hub.changed("selection", "pins")
 
