@@ -139,15 +139,15 @@ def test_a_thumb_is_dragged_and_the_readout_follows(page, explorer, draft):
 def test_what_is_shown_is_of_the_case_as_it_is_set_up_now(page, explorer, draft):
     session = session_of(explorer)
     before = session.selected
-    assert before.kind == "initial" and "length_to_breadth" not in before.evaluation.active_bounds
+    assert before.kind == "initial" and "breadth_to_draft" not in before.evaluation.active_bounds
     page.wait_for_selector("[data-standing]", state="attached")
     # a bound that reaches the initial design: it stands on it at once
-    own = before.evaluation.variables.length_to_breadth
-    standing = '[data-standing]:has-text("L/B on its lower bound")'
-    explorer.settings.set_bounds("length_to_breadth", (own, 8.5))
+    own = before.evaluation.variables.breadth_to_draft
+    standing = '[data-standing]:has-text("B/d on its lower bound")'
+    explorer.settings.set_bounds("breadth_to_draft", (own, 4.5))
     page.wait_for_selector(standing)
     choose_tab(page, "What-if")
-    page.locator("label:visible").get_by_text("L/B ↓", exact=True).wait_for()
+    page.locator("label:visible").get_by_text("B/d ↓", exact=True).wait_for()
     choose_tab(page, "Design")
     press(page, "undo")
     page.wait_for_selector(standing, state="detached")
