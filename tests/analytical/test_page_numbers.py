@@ -22,6 +22,7 @@ from explorer.services.designs import Designs
 from explorer.state.run_picture import GenerationPicture, RunPicture
 from explorer.state.shown import Shown
 from explorer.views import scene_view
+from explorer.views.pareto.chart import nothing_feasible
 from explorer.views.tables import comparison_table, design_card
 from hpsop_core import evaluate
 from hpsop_core.charts.looks import Look, Sheet
@@ -129,6 +130,20 @@ def test_a_scrubbed_generation_is_that_generation() -> None:
     assert picture.generation_at(None).number == 3
     infeasible = drawn_designs(picture, ParetoOptions(infeasible=True))
     assert 17 in picture.ids[infeasible.rows] and 17 not in picture.ids[drawn_designs(picture, ParetoOptions()).rows]
+
+
+def test_a_run_without_a_feasible_design_says_which_limits_are_in_the_way() -> None:
+    picture = run_picture()
+    assert nothing_feasible(picture) == ""
+    broken = dataclasses.replace(
+        picture,
+        feasible=np.zeros(9, dtype=bool),
+        table=np.array([[0.2, -1.0, 0.1]] * 7 + [[0.2, -1.0, -0.1]] * 2),
+        columns=("g_length", "g_breadth", "g_cavitation"),
+    )
+    said = nothing_feasible(broken)
+    assert said.startswith("None of 9 designs keeps all constraints")
+    assert "length / greatest by 9, cavitation (blade area) by 7 of them" in said and "breadth" not in said
 
 
 def test_front_order_goes_along_the_first_objective() -> None:

@@ -26,6 +26,7 @@ from explorer.state.shown import Shown
 from explorer.state.table_options import TableOptions
 from explorer.views.chips import NOTHING, box, soft
 from explorer.views.saving import Figure, Saving
+from hpsop_core.case.constraints import CONSTRAINTS, FEASIBILITY_TOLERANCE
 from hpsop_core.charts.frame import Key
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.search import Mark
@@ -108,6 +109,11 @@ class ParetoChart:
                 f"×n: n designs that the error of their numbers cannot tell apart; {max(names)} such families."
             )
         plot = pareto_chart(picture, self._background[1], self._marks(picture), keys)
+        nothing = nothing_feasible(picture)
+        if nothing:
+            words = fill('<p class="standing" data-infeasible="1">{}</p>', nothing) + words
+            if not session.infeasible:
+                plot.message("No feasible design yet.\nPress infeasible to see the others.", numbers=True)
         # both are minimised, and the axes do not say so
         plot.text(self.limits[0][0], self.limits[1][0], "↙ better", "soft", dx=5, dy=-6)
         self._hint(plot)
@@ -162,6 +168,22 @@ class ParetoChart:
         if selected is not None:
             marks.append(_mark(picture, selected, "ring", 8.0, "selected", f"selected: {selected.label}"))
         return [mark for mark in marks if mark is not None]
+
+
+def nothing_feasible(picture: RunPicture) -> str:
+    """Why a run has no front: which constraints its designs break, the most often broken first; "" where it has one."""
+    solved = ~picture.failed
+    if not bool(solved.any()) or bool(picture.feasible.any()):
+        return ""
+    broken = [
+        (int((values[solved] > FEASIBILITY_TOLERANCE).sum()), item.label)
+        for item in CONSTRAINTS
+        if (values := picture.column(f"g_{item.name}")) is not None
+    ]
+    most = ", ".join(f"{label} by {count}" for count, label in sorted(broken, reverse=True)[:2] if count)
+    return f"None of {int(solved.sum())} designs keeps all constraints" + (
+        f". Broken: {most} of them." if most else "."
+    )
 
 
 def _edge(value: float, limits: tuple[float, float]) -> float:
