@@ -137,7 +137,8 @@ def parallel_chart(
             box = '<rect x="{:.1f}" y="{:.1f}" width="12" height="{:.1f}" class="brush"/>'
             parts.append(fill(box, x - 6, y0, max(y1 - y0, 2)))
     if not len(rows):
-        parts.append(fill(_TEXT, width / 2, height / 2, "empty", "no designs yet"))
+        words = "no feasible design yet" if len(picture.ids) else "no designs yet"
+        parts.append(fill(_TEXT, width / 2, height / 2, "empty", words))
     return fill(
         '<svg class="chart" data-chart="parallel" data-plot="{left:g},{top:g},{wide:g},{high:g}" '
         'data-limits="0,1,0,1" data-drag="brush" data-click="1" viewBox="0 0 {width:g} {height:g}" role="group" '

@@ -107,7 +107,11 @@ def scatter_chart(
         plot.keys.append(Key("ring", f"level{newest.level} open", f"front of level {newest.level}"))
     draw_marks(plot, marks)
     if not rows.size:
-        plot.message("No designs yet.")
+        plot.message(
+            "No feasible design yet.\nPress infeasible above to see the others."
+            if len(picture.ids)
+            else "No designs yet."
+        )
     return plot
 
 

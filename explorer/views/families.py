@@ -23,7 +23,7 @@ def families(session: Session, designs: Designs) -> Sequence[Figure | Markup]:
     """The cards; lines that are not cut yet come one after another."""
     cards = _cards(session, designs)
     if not cards:
-        return [soft("No front yet: its families stand here once a generation is finished.")]
+        return [soft("No front yet: its families stand here once a finished generation has a feasible design.")]
     initial = designs.known_lines(designs.case.initial.variables)
     if initial is None or any(card.lines is None for card in cards):
         session.slow.latest("families", lambda: _cut_next(session, designs))
