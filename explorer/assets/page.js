@@ -281,6 +281,16 @@
       last.factor = Math.max(0.25, Math.min(4, last.factor * factor));
     else H.send({ t: "zoom", chart: svg.dataset.chart, fx: p.fx, fy: p.fy, factor });
   }, { capture: true, passive: false });
+  // An answer draws what has the focus anew: who steps with the arrow keys goes on in it, and nobody is called back.
+  function stay(node, selector) {
+    const until = Date.now() + 10000;
+    const watch = setInterval(() => {
+      const focused = document.activeElement, lost = focused === document.body;
+      if (Date.now() > until || (focused !== node && !lost) || (lost && node.isConnected)) return clearInterval(watch);
+      const drawn = node.isConnected ? null : document.querySelector(selector);
+      if (drawn) { node = drawn; drawn.focus(); }
+    }, 40);
+  }
   // ---- undo and redo: of the what-if where its tab is open and one was last at work outside the settings, else of these
   let inSettings = true;
   ["pointerdown", "focusin"].forEach((type) => listen(document, type, (event) => {
@@ -308,13 +318,7 @@
     event.preventDefault();
     event.stopImmediatePropagation();
     H.send({ t: "act", name: "axis_move", arg: axis + "=" + (event.key === "ArrowLeft" ? -1 : 1) });
-    // the answer draws the chart anew: who moves an axis goes on with it
-    const again = setInterval(() => {
-      if (document.activeElement !== document.body) return;
-      const drawn = document.querySelector('[data-axis="' + axis + '"]');
-      if (drawn) drawn.focus();
-    }, 40);
-    setTimeout(() => clearInterval(again), 1500);
+    stay(event.target, '[data-axis="' + axis + '"]');
   }, true);
 
   listen(document, "keydown", (event) => {
@@ -363,13 +367,7 @@
     // one that was refused is not drawn anew: it goes back to what holds
     setTimeout(() => { if (box.matches("input") && box.isConnected && box.value !== box.defaultValue) box.value = box.defaultValue; }, 1500);
     if (document.activeElement !== box) return;
-    // the answer draws the box anew: who steps with the arrow keys goes on in it
-    const again = setInterval(() => {
-      if (document.activeElement !== document.body) return;
-      const drawn = document.querySelector('[data-set][data-arg="' + box.dataset.arg + '"]');
-      if (drawn) drawn.focus();
-    }, 40);
-    setTimeout(() => clearInterval(again), 1500);
+    stay(box, '[data-set][data-arg="' + box.dataset.arg + '"]');
   }, true);
 
   // ---- tooltip ---------------------------------------------------------------------------------------------------
