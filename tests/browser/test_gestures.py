@@ -369,6 +369,7 @@ def test_charts_of_the_run_are_chosen_moved_and_read(page, session):
     page.mouse.up()
     wait_until(lambda: session.charts.axes, 20, "another order of the axes")
     assert session.charts.axes[0] == "breadth_to_draft"
+    page.wait_for_function("() => document.querySelector('[data-axis]').dataset.axis === 'breadth_to_draft'")
     # or stepped by the arrow keys, which stay with it
     page.locator("[data-axis=length_to_breadth]").focus()
     place = session.charts.axes.index("length_to_breadth")
