@@ -36,6 +36,8 @@ from hpsop_core.runs.records import (
 from hpsop_core.runs.schema import COLUMNS, FIRST_SEARCH_ID, HAND_IDS_BEGIN, schema_version
 from hpsop_core.runs.ship import ShipFile, named_files, refuse_changed_ship, with_files
 
+# designs whose numbers stay in memory, 12 to 25 kB each
+_KEPT_DESIGNS = 1000
 _BEYOND_ANY_ID = 2**63  # SQLite's integers end here
 _ORIGIN = COLUMNS["evaluations"].index("origin")
 
@@ -294,7 +296,9 @@ class RunReader:
         Raises:
             InputError: an id that is not in the run.
         """
-        missing = [number for number in ids if number not in self._designs]
+        # what another thread forgets meanwhile is still at hand here
+        found = {number: known for number in ids if (known := self._designs.get(number)) is not None}
+        missing = [number for number in ids if number not in found]
         if missing:
             with self._reading() as content:
                 for number in missing:
@@ -305,9 +309,13 @@ class RunReader:
                         raise InputError(f"{self.path}: has no design {number}; see 'hpsop show {self.path} --front'")
                     record = _record("evaluations", row)
                     evaluation = self._placed(content.document(row))
-                    self._designs[number] = DesignRecord(number, record["origin"], record["generation"], evaluation)
+                    found[number] = DesignRecord(number, record["origin"], record["generation"], evaluation)
+            self._designs.update(found)
+            # a page that is open for days may look at every design of a run
+            for number in list(self._designs)[:-_KEPT_DESIGNS]:
+                self._designs.pop(number, None)
         errors = self._errors(fresh=bool(missing))
-        return tuple(_refined(self._designs[number], errors.get(str(number))) for number in ids)
+        return tuple(_refined(found[number], errors.get(str(number))) for number in ids)
 
     def comparison_errors(self, ids: Sequence[int]) -> dict[int, Mapping[str, float]]:
         """The errors in a comparison of those designs that were solved finer, by id; nothing else of them is read."""

@@ -9,6 +9,7 @@ import pytest
 from hpsop_core import evaluate, load_case, open_run
 from hpsop_core.assets import asset_path
 from hpsop_core.evaluation.reference import Reference
+from hpsop_core.runs import reader
 from hpsop_core.runs.reader import RunReader
 from tools.front_choice import choice_of
 
@@ -58,3 +59,11 @@ def test_the_errors_of_its_front_are_known_without_reading_the_designs(run: RunR
     own = {record.id: record.evaluation.comparison_errors for record in front}
     assert all(own.values()) and run.comparison_errors(tuple(own)) == own
     assert run.comparison_errors((1,)) == {}
+
+
+def test_a_reader_keeps_the_last_designs_that_it_was_asked_for(run: RunReader, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(reader, "_KEPT_DESIGNS", 5)
+    ids = [point.id for point in run.archive()[:12]]
+    whole = run.designs(ids)
+    assert [record.id for record in whole] == ids and len(run._designs) == 5
+    assert run.designs(ids[:3]) == whole[:3] and run.designs(ids[-2:]) == whole[-2:]
