@@ -195,7 +195,9 @@ def convergence_chart(
     """
     shown = [value for value in hypervolume if np.isfinite(value)]
     x = Axis("generation [–]", (0.0, float(max(total, 1))))
-    y = Axis("hypervolume [–]", padded(shown, 0.08) if shown else (0.0, 1.0), 5)
+    # an area: never negative, and none at all while no design is feasible
+    low, high = padded(shown, 0.08) if any(shown) else (0.0, 1.0)
+    y = Axis("hypervolume [–]", (max(low, 0.0), high), 5)
     second = None if feasible is None else Axis("feasible [%]", (0.0, 104.0), 5)
     plot = Plot(sheet.width, sheet.height, x, y, second, margins=(56, 14, 8, 34), style=sheet.style)
     if not shown:

@@ -18,7 +18,16 @@ from hpsop_core.charts.looks import Look, Published, Sheet
 from hpsop_core.charts.marks import smooth
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.propulsion import open_water_chart
-from hpsop_core.charts.search import Cloud, Front, Mark, count_coincident, evolution_chart, pareto_chart, window
+from hpsop_core.charts.search import (
+    Cloud,
+    Front,
+    Mark,
+    convergence_chart,
+    count_coincident,
+    evolution_chart,
+    pareto_chart,
+    window,
+)
 from hpsop_core.charts.style import PRINT, ROLES, SCREEN, style_sheet
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.reference import reference_for
@@ -296,3 +305,9 @@ def test_a_correlations_cell_tells_its_sign():
     assert isinstance(correlation_cell(0.5), Markup)
     assert ">+0.50<" in correlation_cell(0.5) and ">−0.50<" in correlation_cell(-0.5)
     assert ">0.00<" in correlation_cell(-0.001) and correlation_cell(None) == "–"
+
+
+@pytest.mark.parametrize("found", [[0.0, 0.0, 0.0], [0.0, 0.001, 0.002], [0.1, 0.11, 0.111]])
+def test_a_hypervolume_has_no_negative_ticks(found: list[float]):
+    low, high = convergence_chart([1, 2, 3], [1, 1, 1], found, 3, Sheet(400.0, 200.0)).y.limits
+    assert 0.0 <= low <= found[0] and high > max(found)
