@@ -6,6 +6,7 @@ from collections import Counter
 
 import numpy as np
 import pytest
+from scipy.stats import qmc
 
 from hpsop_core.case.case import SHIPPED_CASES, Case, case_from_toml, load_case
 from hpsop_core.case.variables import VARIABLE_NAMES, DesignSpace, DesignVariables
@@ -99,6 +100,15 @@ def test_a_block_coefficient_that_is_searched_is_the_hull_s_own() -> None:
         assert space.values(design)["block_coefficient_ratio"] == pytest.approx(ratio, rel=1e-15)
         assert (hull.length / hull.breadth, hull.draft) == (pytest.approx(length), draft)
     assert space.active(space.decode(space.relaxed_lower))["block_coefficient_ratio"] == "lower"
+
+
+@pytest.mark.parametrize("name", ["dtc-p4119", "dtc-p4119-power"])
+def test_the_form_carries_what_the_recommended_cases_sample(name: str) -> None:
+    case = load_case(name)
+    lower, upper = case.bounds.relaxed_lower, case.bounds.relaxed_upper
+    points = qmc.Sobol(len(case.bounds.free), scramble=False).random(128)
+    designs = [case.bounds.decode(lower + point * (upper - lower)) for point in points]
+    assert sum(design_hull(case, design).clipped for design in designs) <= 2
 
 
 def test_bounds_of_a_block_coefficient_take_the_place_of_the_displacement_s() -> None:
