@@ -98,7 +98,9 @@ def test_what_was_learnt_serves_the_spaces_within_its_own() -> None:
     case = load_case("dtc-p4119")
     kept = shipped_calibration.shipped(case, shipped_calibration.LEARNT)
     assert kept is not None
-    narrower, wider = case.with_bounds({"draft": (13.0, 16.0)}), case.with_bounds({"draft": (13.0, 17.5)})
+    low, high = case.bounds.as_dict()["draft"]
+    narrower = case.with_bounds({"draft": (low + 0.2, high - 0.2)})
+    wider = case.with_bounds({"draft": (low, high + 1.0)})
     assert shipped_calibration.shipped(narrower, shipped_calibration.LEARNT) == kept
     assert shipped_calibration.shipped(wider, shipped_calibration.LEARNT) is None
     other = case.replaced("constants", wave_calibration_hulls=24)
