@@ -7,6 +7,8 @@ import contextlib
 import importlib
 import io
 import logging
+import multiprocessing
+import os
 import signal
 import sys
 import threading
@@ -42,6 +44,8 @@ from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.runs.reader import open_run
 
 _IMPORT_SECONDS = 4.0
+# an evaluation under way is waited for, 3 s at most, and workers that still import
+_CLOSING_SECONDS = 40.0
 
 
 class Explorer:
@@ -296,7 +300,9 @@ def main(argv: Sequence[str] | None = None) -> int:
         )
     sys.stdout.write(f"hpsop explorer: {explorer.address}   (Ctrl-C ends it)\n")
     sys.stdout.flush()
-    signal.signal(signal.SIGTERM, lambda *_: explorer._gone.set())
+    # not as an exception, which something that runs in between may swallow
+    for ending in (signal.SIGINT, signal.SIGTERM):
+        signal.signal(ending, lambda *_: explorer._gone.set())
     # The terminal was closed; with nohup it is ignored, and stays so.
     if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
         signal.signal(signal.SIGHUP, lambda *_: explorer._gone.set())
@@ -306,11 +312,24 @@ def main(argv: Sequence[str] | None = None) -> int:
                 with contextlib.suppress(webbrowser.Error):
                     webbrowser.open(entrance)
             explorer.wait()
-    except KeyboardInterrupt:
-        sys.stderr.write("\n")
     finally:
+        # who presses Ctrl-C again does not want to wait
+        signal.signal(signal.SIGINT, lambda *_: _end_now())
+        late = threading.Timer(_CLOSING_SECONDS, _end_now)
+        late.daemon = True
+        late.start()
         explorer.close()
+        late.cancel()
     return 0
+
+
+def _end_now() -> None:
+    """End this process and its workers as they are: a run's file needs no goodbye."""
+    for child in multiprocessing.active_children():
+        child.kill()
+    sys.stderr.write("hpsop-explore: ended without waiting; a run's file keeps all that is finished\n")
+    sys.stderr.flush()
+    os._exit(0)
 
 
 if __name__ == "__main__":
