@@ -53,8 +53,8 @@ def test_sweep_length_to_breadth(tmp_path: Path) -> None:
     rows = example("sweep_length_to_breadth", tmp_path, "--points", "2").splitlines()[2:]
     numbers = [[float(word) for word in row.split()] for row in rows]
     assert [row[0] for row in numbers] == list(load_case("dtc-p4119").bounds.as_dict()["length_to_breadth"])
-    # The short ship has the greater resistance at both levels.
-    assert numbers[0][2] > numbers[1][2] and numbers[0][3] > numbers[1][3]
+    # At one displacement and below Fn 0.22 friction decides, and the longer ship has more of it: at both levels.
+    assert numbers[0][2] < numbers[1][2] and numbers[0][3] < numbers[1][3]
 
 
 def test_own_objective(tmp_path: Path) -> None:
