@@ -318,8 +318,10 @@ def main(argv: Sequence[str] | None = None) -> int:
         late = threading.Timer(_CLOSING_SECONDS, _end_now)
         late.daemon = True
         late.start()
-        explorer.close()
-        late.cancel()
+        try:
+            explorer.close()
+        finally:
+            late.cancel()
     return 0
 
 

@@ -10,13 +10,17 @@ from hpsop_core.markup import Markup, fill
 _NOTHING = Markup("")
 
 
+def reason_of(error: BaseException) -> str:
+    """What people are told of an error: our own are sentences, others need their kind."""
+    return str(error) if isinstance(error, HpsopError) else f"{type(error).__name__}: {error}"
+
+
 def failure(error: BaseException) -> Markup:
     """What stands where something could not be drawn."""
-    why = str(error) if isinstance(error, HpsopError) else f"{type(error).__name__}: {error}"
     return fill(
         '<div class="hp"><p class="bad" role="alert" data-failed="1">This could not be drawn ({}). What changes next '
         "draws it again; the rest of the page goes on.</p></div>",
-        why,
+        reason_of(error),
     )
 
 

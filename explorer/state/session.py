@@ -6,6 +6,7 @@ import dataclasses
 from collections.abc import Callable, Mapping
 from typing import Any
 
+from explorer.server.html_slot import reason_of
 from explorer.server.worker import LatestWorker
 from explorer.state.app_state import AppState
 from explorer.state.chart_options import ChartOptions
@@ -16,7 +17,6 @@ from explorer.state.run_picture import RunPicture
 from explorer.state.shown import Shown
 from explorer.state.table_options import TableOptions
 from explorer.state.view_options import ViewOptions
-from hpsop_core.errors import HpsopError
 from hpsop_core.markup import Markup
 
 MOST_PINS = 4
@@ -94,8 +94,7 @@ class Session:
         self._closers: list[Callable[[], None]] = []
 
     def _stumbled(self, error: BaseException) -> None:
-        text = str(error) if isinstance(error, HpsopError) else f"{type(error).__name__}: {error}"
-        self.notify("Something went wrong", text, "red")
+        self.notify("Something went wrong", reason_of(error), "red")
 
     @property
     def picture(self) -> RunPicture:
