@@ -3,14 +3,16 @@
 from __future__ import annotations
 
 import argparse
+import contextlib
 import gc
 import importlib
 import os
 import sys
-from collections.abc import Sequence
+from collections.abc import Iterator, Sequence
 from typing import NoReturn
 
 from hpsop_core.errors import HpsopError, InputError, message_line, shown
+from hpsop_core.lean_imports import lean_imports
 from hpsop_core.version import __version__
 
 USAGE_ERROR = 2
@@ -54,10 +56,25 @@ def build_parser(command: str | None = None) -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and return its exit code: 0 done, 1 a computation failed, 2 bad input, 130 interrupted."""
     words = sys.argv[1:] if arguments is None else list(arguments)
+    with _quick() if words and words[0] in _SHORT else contextlib.nullcontext():
+        return _run(words)
+
+
+@contextlib.contextmanager
+def _quick() -> Iterator[None]:
+    """A context for a command whose time is mostly what it loads."""
     collecting = gc.isenabled()
-    if words and words[0] in _SHORT:
-        # Of what a short command makes nearly all stays to its end: looking for garbage is a tenth of its time.
-        gc.disable()
+    # Nearly all that it makes stays to its end: looking for garbage is a tenth of its time.
+    gc.disable()
+    try:
+        with lean_imports():
+            yield
+    finally:
+        if collecting:
+            gc.enable()
+
+
+def _run(words: Sequence[str]) -> int:
     try:
         parsed = build_parser(words[0] if words else None).parse_args(words)
         code = parsed.handler(parsed)
@@ -81,9 +98,6 @@ def main(arguments: Sequence[str] | None = None) -> int:
         name = "" if error.filename is None else f"{shown(str(error.filename)[-60:])}: "
         print(f"hpsop: {name}{message_line(error.strerror or str(error))}; choose another place", file=sys.stderr)
         return USAGE_ERROR
-    finally:
-        if collecting:
-            gc.enable()
 
 
 if __name__ == "__main__":

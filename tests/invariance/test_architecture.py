@@ -30,6 +30,7 @@ ORDER = (
     "model_test",
     "markup",
     "units",
+    "lean_imports",
     "one_thread",
     "kept_memory",
     "compiled",

@@ -19,6 +19,8 @@ NOT_FOR_ONE_ANSWER = (
     "hpsop_core.runs",
     "matplotlib",
     "numba",
+    "numpy.f2py.crackfortran",
+    "numpy.testing._private",
     "pymoo",
     "scipy.ndimage",
     "scipy.stats",
@@ -50,6 +52,20 @@ def test_the_page_has_its_address_before_what_only_a_chart_asks_for() -> None:
     command = "import sys; import explorer.app; print(*sys.modules)"
     done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True)
     assert not set(done.stdout.split()) & {"dask", "geomdl", "matplotlib", "numba", "pymoo", "scipy.stats"}
+
+
+def test_what_libraries_look_for_is_there_again_afterwards() -> None:
+    command = (
+        "import inspect, sys\n"
+        "from hpsop_core.lean_imports import lean_imports\n"
+        "with lean_imports():\n"
+        "    import scipy.special, numba\n"
+        "assert not {'cffi', 'yaml', 'numpy.f2py.crackfortran', 'numpy.testing._private'} & set(sys.modules)\n"
+        "import cffi, numpy\n"
+        "numpy.testing.assert_array_equal(numpy.zeros(2), 0.0)\n"
+        "assert numpy.f2py.get_include() and inspect.getdoc(inspect.getdoc)\n"
+    )
+    subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True)
 
 
 def _commands(parser: argparse.ArgumentParser) -> set[str]:
