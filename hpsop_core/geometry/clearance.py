@@ -41,16 +41,27 @@ def swept_points(hull: Hull, propeller: Propeller) -> Array:
 
     At each of some radii the circles of the leading edge, the mid-chord and the trailing edge.
     """
+    return _on_circles(*_circles(hull, propeller), 0.5 * propeller.diameter, hull.shaft_height)
+
+
+def _circles(hull: Hull, propeller: Propeller) -> tuple[Array, Array]:
+    """The circles about the shaft on which the swept points lie: of each its x in ship axes, m, and r/R."""
     radii = np.array(_RADII)
     sections = propeller.table.at(radii)
     along = radii * sections.skew / np.cos(sections.pitch_angle)
     half = sections.chord_ratio * np.array([[-1.0], [0.0], [1.0]])
     downstream = 2.0 * sections.rake_ratio + (along + half) * np.sin(sections.pitch_angle)
+    x = propeller_plane_x(hull, propeller) - 0.5 * propeller.diameter * downstream
+    return x.ravel(), np.tile(radii, len(half))
+
+
+def _on_circles(x: Array, radii: Array, tip_radius: float, shaft_height: float) -> Array:
     angle = np.linspace(0.0, np.pi, _ANGLES)
-    x, radius, turned = np.broadcast_arrays(downstream[..., None], radii[:, None], angle)
-    points = np.stack([-x, radius * np.sin(turned), radius * np.cos(turned)], axis=-1).reshape(-1, 3)
-    points *= 0.5 * propeller.diameter
-    return np.asarray(points + np.array([propeller_plane_x(hull, propeller), 0.0, hull.shaft_height]))
+    points = np.zeros((len(x), _ANGLES, 3))
+    points[..., 0] = x[:, None]
+    points[..., 1] = radii[:, None] * np.sin(angle) * tip_radius
+    points[..., 2] = radii[:, None] * np.cos(angle) * tip_radius + shaft_height
+    return points.reshape(-1, 3)
 
 
 def propeller_clearance(hull: Hull, propeller: Propeller) -> float:
@@ -62,27 +73,40 @@ def propeller_clearance(hull: Hull, propeller: Propeller) -> float:
         hull: the design's.
         propeller: the design's.
     """
-    swept = swept_points(hull, propeller)
-    parameters = np.linspace(0.0, 1.0, _SAMPLES)
-    samples = np.concatenate(
-        [patch.evaluate(parameters, parameters).reshape(-1, 3) for patch in hull.patches if patch.underwater]
-    )
-    near = samples[np.abs(samples[:, 0] - propeller_plane_x(hull, propeller)) < propeller.diameter]
+    x, radii = _circles(hull, propeller)
+    swept = _on_circles(x, radii, 0.5 * propeller.diameter, hull.shaft_height)
+    near = _hull_points(hull, propeller_plane_x(hull, propeller), propeller.diameter)
     if not len(near):
         return float(propeller.diameter)
     inside = _inside(hull, swept)
     if not np.any(inside):
-        near = _candidates(near, swept)
+        near = _candidates(near, swept, x, 0.5 * propeller.diameter * radii, hull.shaft_height)
     distance = np.asarray(cKDTree(near, balanced_tree=False, compact_nodes=False).query(swept)[0])
     return -float(distance[inside].max()) if np.any(inside) else float(distance.min())
 
 
-def _candidates(samples: Array, swept: Array) -> Array:
-    """The hull's points that can be the nearest: as near to the box round the swept points as a known distance."""
-    beside = np.maximum(np.maximum(swept.min(axis=0) - samples, samples - swept.max(axis=0)), 0.0)
-    square = np.sum(beside * beside, axis=1)
+def _hull_points(hull: Hull, x: float, reach: float) -> Array:
+    """Sample points of the underwater hull whose stations lie within ``reach`` of x, (n, 3), m."""
+    parameters = np.linspace(0.0, 1.0, _SAMPLES)
+    parent = np.concatenate([hull.parent.points(name, parameters, parameters) for name in hull.parent.underwater])
+    # x depends on u alone: most of a hull need not be looked at, and one call moves the stations of all patches.
+    stations = hull.station_map(parent[:, 0, 0])
+    rows = np.flatnonzero(np.abs(stations - x) < reach)
+    points: Array = parent[rows] * np.array(hull.scale)
+    points[..., 0] = stations[rows, None]
+    return points.reshape(-1, 3)
+
+
+def _candidates(samples: Array, swept: Array, x: Array, radii: Array, shaft_height: float) -> Array:
+    """The hull's points that can be the nearest: as near to the circles of the swept points as a known distance.
+
+    The circles' x and radii are in m. A tree of what is left costs a tenth of one of all.
+    """
+    from_shaft = np.sqrt(samples[:, 1] ** 2 + (samples[:, 2] - shaft_height) ** 2)
+    square = np.min((samples[:, 0] - x[:, None]) ** 2 + (from_shaft - radii[:, None]) ** 2, axis=0)
     known = np.min(np.sum((swept - samples[np.argmin(square)]) ** 2, axis=1))
-    return np.asarray(samples[square <= known])
+    # a circle is not farther than its points, but for rounding
+    return np.asarray(samples[square <= known * (1.0 + 1e-9)])
 
 
 def _inside(hull: Hull, points: Array) -> Array:

@@ -194,3 +194,13 @@ def test_tip_clearance() -> None:
     # two samplings 0.1 to 0.4 m apart
     assert clearances[1] == pytest.approx(nearest, abs=0.05)
     assert baseline_clearance(hull, propeller) == pytest.approx(0.5)
+
+
+@pytest.mark.parametrize("diameter", [5.0, 9.0, 11.0])
+def test_the_nearest_point_of_the_hull_is_never_passed_over(diameter: float) -> None:
+    hull = load_parent_hull().transform(340.0, 52.0, 14.0, 170000.0, 1.5)
+    propeller = propeller_family(load_propeller(), diameter, 5)
+    parameters = np.linspace(0.0, 1.0, 48)
+    patches = [patch.evaluate(parameters, parameters).reshape(-1, 3) for patch in hull.patches if patch.underwater]
+    away = swept_points(hull, propeller)[:, None] - np.concatenate(patches)
+    assert propeller_clearance(hull, propeller) == pytest.approx(np.sqrt((away**2).sum(axis=-1).min()), rel=1e-12)
