@@ -17,6 +17,12 @@ from hpsop_core.runs.store import RunStore
 from hpsop_core.runs.tasks import Physics, hydrodynamics
 
 
+def shown_front(path: str | Path, generation: int) -> tuple[int, ...]:
+    """The designs of the front that people are shown after a generation (see ``fronts``), ascending in f1."""
+    front = open_run(path).known_front(generation)
+    return () if front is None else front.ids
+
+
 def unrefined(store: RunStore, front: Sequence[int]) -> dict[int, DesignVariables]:
     """The designs of a front, and the initial one, whose errors are not known yet, by their ids."""
     return _unknown(store, (initial_id(TRUTH.number), *front))
@@ -82,9 +88,7 @@ def refine_front(
                 f"{path}: has no front of level {TRUTH.number} yet, whose errors could be stated; let it go on"
             )
         basis = (physics or hydrodynamics()).reference_from_dict(json.loads(reference))
-        shown = open_run(path).known_front(last.number)
-        front = shown.ids if shown is not None else ()
-        wanted = unrefined(store, front) if designs is None else _unknown(store, designs)
+        wanted = unrefined(store, shown_front(path, last.number)) if designs is None else _unknown(store, designs)
         for done, (number, variables) in enumerate(wanted.items()):
             told(done, len(wanted))
             keep_errors(store, {number: refine(store.case, variables, TRUTH.number, basis).as_dict()})

@@ -25,7 +25,7 @@ from hpsop_core.runs.events import RunEvent, RunSnapshot, State
 from hpsop_core.runs.learning import Learning
 from hpsop_core.runs.ledger import DivergedError, Ledger
 from hpsop_core.runs.records import variables_text
-from hpsop_core.runs.refinement import keep_errors, unrefined
+from hpsop_core.runs.refinement import keep_errors, shown_front, unrefined
 from hpsop_core.runs.schema import initial_id, software_versions
 from hpsop_core.runs.store import RunStore, StoreUnwritableError
 from hpsop_core.runs.tasks import Physics, failure_text, reference_task
@@ -162,13 +162,11 @@ class RunDriver:
             self._refine(search.number)
 
     def _refine(self, generation: int) -> None:
-        """Solve the last front and the initial design on a finer mesh, and keep their numbers' errors."""
+        """Solve the front that is shown and the initial design on a finer mesh, and keep their numbers' errors."""
         last = self._store.generation(generation)
         if self._physics.refine is None or last is None or last.level != TRUTH.number:
             return
-        # of the population: a front of everything solved may be many times that, and each costs seconds; the rest can
-        # be asked for (refine_front)
-        wanted = unrefined(self._store, last.front)
+        wanted = unrefined(self._store, shown_front(self._store.path, generation))
         if not wanted:
             return
         reference = self._reference(TRUTH.number)

@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from playwright.sync_api import Browser, Page, sync_playwright
+from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 
 from explorer.app import Explorer
 from explorer.server.security import free_port
@@ -21,6 +21,13 @@ from tools.chromium import ARGUMENTS, chromium_program
 pytestmark = pytest.mark.browser
 # Software graphics on a busy machine: the first mesh alone may stall a page for many seconds.
 PATIENCE = 120_000
+# With software graphics a page's picture costs most of what the browser computes, and only some tests look at it. The
+# others leave the last step out: all messages, meshes and layout are as ever, and the canvas stays empty.
+_UNDRAWN = """
+for (const context of [WebGLRenderingContext, WebGL2RenderingContext])
+    for (const name of ["drawElements", "drawArrays", "drawElementsInstanced", "drawArraysInstanced"])
+        if (context.prototype[name]) context.prototype[name] = () => {};
+"""
 
 
 def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
@@ -34,6 +41,14 @@ def small_case(**settings: Any) -> Case:
     """Two speeds with a small search at level 1; the waves stated, so that level 2 is not needed."""
     case = stated_case()
     return case.replaced("optimization", **{"population": 8, "generations": 40, "level1_generations": 40, **settings})
+
+
+def new_context(chromium: Browser, width: int, height: int, drawn: bool = False) -> BrowserContext:
+    """A browser of another person's; its pages draw their picture only if ``drawn``."""
+    context = chromium.new_context(viewport={"width": width, "height": height})
+    if not drawn:
+        context.add_init_script(_UNDRAWN)
+    return context
 
 
 @pytest.fixture(scope="session")
@@ -60,13 +75,18 @@ def open_page(chromium: Browser) -> Iterator[Callable[..., Page]]:
     contexts = []
 
     def open_one(
-        explorer: Explorer, width: int = 1200, height: int = 700, fresh: bool = True, toured: bool = True
+        explorer: Explorer,
+        width: int = 1200,
+        height: int = 700,
+        fresh: bool = True,
+        toured: bool = True,
+        drawn: bool = False,
     ) -> Page:
         """``fresh``: nobody has chosen a design here before; the tests begin at the initial one, without a ghost.
 
-        ``toured``: this browser has seen the tour, which is not offered again.
+        ``toured``: this browser has seen the tour, which is not offered again. ``drawn``: with its picture.
         """
-        context = chromium.new_context(viewport={"width": width, "height": height})
+        context = new_context(chromium, width, height, drawn)
         contexts.append(context)
         if toured:
             context.add_init_script('localStorage.setItem("hpsop-toured", "1")')

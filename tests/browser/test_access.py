@@ -9,7 +9,7 @@ from collections.abc import Callable, Iterator
 from urllib.parse import urlsplit
 
 import pytest
-from conftest import PATIENCE
+from conftest import PATIENCE, new_context
 from playwright.sync_api import Browser, Page
 
 from explorer.app import Explorer
@@ -49,7 +49,7 @@ def _pump(source: socket.socket, sink: socket.socket, change: Callable[[bytes], 
 @pytest.fixture
 def page(chromium: Browser) -> Iterator[Page]:
     """A browser that was never here before."""
-    context = chromium.new_context(viewport={"width": 1366, "height": 768})
+    context = new_context(chromium, 1366, 768)
     fresh = context.new_page()
     fresh.set_default_timeout(PATIENCE)
     yield fresh

@@ -9,7 +9,7 @@ import sys
 from pathlib import Path
 
 import pytest
-from conftest import PATIENCE, choose_tab, press, small_case, wait_until
+from conftest import PATIENCE, choose_tab, new_context, press, small_case, wait_until
 
 from explorer.server.security import free_port
 from hpsop_core.runs.reader import open_run
@@ -92,7 +92,7 @@ def generation(page) -> int:
 def page(chromium, command, writer):
     line = command.start(str(writer.run))
     assert line.startswith(f"hpsop explorer: http://127.0.0.1:{command.port}/?token=")
-    context = chromium.new_context(viewport={"width": 1366, "height": 768})
+    context = new_context(chromium, 1366, 768)
     opened = context.new_page()
     opened.set_default_timeout(PATIENCE)
     opened.goto(command.address)

@@ -292,17 +292,6 @@ def test_camera_presets_and_the_turning_propeller(page, session, explorer):
     press(page, "switch", "ghost")
 
 
-def test_screenshot_downloads_a_picture(page, session):
-    with page.expect_download() as waiting:
-        press(page, "screenshot")
-    name = waiting.value.suggested_filename
-    assert name.startswith("hpsop-")
-    with Image.open(waiting.value.path()) as picture:
-        assert picture.format == "PNG"
-        assert picture.size == tuple(session.size)
-        assert len(picture.convert("RGB").getcolors(maxcolors=2**24)) > 50  # a ship, not one colour
-
-
 def test_the_selected_design_downloads_as_cad(page, session):
     press(page, "choose", "compromise")
     wait_until(lambda: session.selected.kind == "run", 20, "the compromise")

@@ -49,7 +49,7 @@ def at(page, f1: float, f2: float) -> tuple[float, float]:
 
 
 def test_start_three_generations_click_a_front_point(explorer, open_page):
-    page = open_page(explorer)
+    page = open_page(explorer, drawn=True)
     session = session_of(explorer)
     # before any run: the initial design in table and scene
     client = explorer.server.get_clients()[session.client_id]

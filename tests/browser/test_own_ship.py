@@ -9,7 +9,7 @@ from pathlib import Path
 from typing import Any
 
 import pytest
-from conftest import PATIENCE, choose_tab, press, session_of, small_case, wait_until
+from conftest import PATIENCE, choose_tab, new_context, press, session_of, small_case, wait_until
 
 from explorer.app import Explorer
 from explorer.server.security import free_port
@@ -248,7 +248,7 @@ def test_the_command_s_argument_is_brought_in(tmp_path_factory: pytest.TempPathF
         workers=1,
         hull=hull_file(str(HULLS / "kvlcc2.csv")),
     )
-    context = chromium.new_context(viewport={"width": 1366, "height": 900})
+    context = new_context(chromium, 1366, 900)
     try:
         page = context.new_page()
         page.set_default_timeout(PATIENCE)

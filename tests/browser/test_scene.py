@@ -27,7 +27,7 @@ def explorer(tmp_path_factory):
 
 @pytest.fixture(scope="module")
 def page(explorer, open_page):
-    return open_page(explorer, 1366, 600)
+    return open_page(explorer, 1366, 600, drawn=True)
 
 
 def _seen(camera, points: np.ndarray) -> np.ndarray:
@@ -52,6 +52,17 @@ def test_the_whole_ship_is_in_the_picture_when_the_page_opens(explorer, page):
     # the view between the docks, as the browser says; it may take some frames until the last dock stands
     wait_until(lambda: _seen(camera, ship) < 1.0, 30, "a camera that holds the ship")
     assert _seen(camera, ship) > 0.8  # and fills the view
+
+
+def test_screenshot_downloads_a_picture(explorer, page):
+    with page.expect_download() as waiting:
+        press(page, "screenshot")
+    name = waiting.value.suggested_filename
+    assert name.startswith("hpsop-")
+    with Image.open(waiting.value.path()) as picture:
+        assert picture.format == "PNG"
+        assert picture.size == tuple(session_of(explorer).size)
+        assert len(picture.convert("RGB").getcolors(maxcolors=2**24)) > 50  # a ship, not one colour
 
 
 def test_views_make_room_hide_the_hull_and_are_saved_at_any_size(explorer, page):

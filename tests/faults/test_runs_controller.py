@@ -169,6 +169,14 @@ def test_another_total_keeps_the_cases_proportion_of_the_levels() -> None:
         planned_case(case, {"generations": 3, "level1_generations": 4})
 
 
+def test_errors_are_stated_for_the_whole_front_that_is_shown(tmp_path: Path) -> None:
+    case = small_case(population=8, generations=12, level1_generations=2, final_errors=True)
+    run = optimize(case, tmp_path / "run.hpsop", workers=2, physics=quick_physics.refining_physics())
+    shown, population = run.front(), run.generation()
+    assert population is not None and len(shown) > len(population.front)
+    assert all(record.evaluation.errors_source == "solved" for record in (*shown, run.initial(2)))
+
+
 def test_a_reader_follows_a_run_that_is_being_written(tmp_path: Path) -> None:
     case = small_case()
     run = RunController(tmp_path / "run.hpsop", case, workers=1, physics=physics(quick_physics.slow))
