@@ -1,12 +1,33 @@
-"""`hpsop-explore`: loads the page without what its libraries load for others, and runs it."""
+"""`hpsop-explore`: loads the page without what its libraries load for others, runs it, and ends the process.
+
+The page is loaded when the command is called and not before: the workers of a run import the program that started them
+(multiprocessing does so that they know its functions), and a second of imports would be most of their start.
+"""
 
 from __future__ import annotations
 
+import atexit
+import os
+import sys
+import threading
+from typing import NoReturn
+
 from hpsop_core.lean_imports import lean_imports
 
+_ENDING_SECONDS = 10.0
 
-def main() -> int:
-    """As ``explorer.app.main``."""
+
+def main() -> NoReturn:
+    """As ``explorer.app.main``, which may end by an exception; does not return."""
     with lean_imports():
         from explorer.app import main as page
-    return page()
+    status = page()
+    # What is worth keeping has been closed. Python's own end would wait for every thread of every pool, look through a
+    # million objects for a second, and for a lock that a daemon thread held when it was stopped it would wait for ever.
+    late = threading.Timer(_ENDING_SECONDS, os._exit, (status,))
+    late.daemon = True
+    late.start()
+    atexit._run_exitfuncs()
+    sys.stdout.flush()
+    sys.stderr.flush()
+    os._exit(status)

@@ -159,7 +159,7 @@ class RunController:
             from hpsop_core.runs.replay import RunDriver
 
             physics = self._physics or hydrodynamics()
-            workers = partial(make_workers, self._executor, self._workers)
+            workers = partial(make_workers, self._executor, self._workers, control)
             self._driver = RunDriver(self._store, physics, workers, control, self._emit)
             self._driver.run()
         except HpsopError as error:

@@ -46,13 +46,15 @@ class LocalWorkers:
 
     Args:
         count: of processes.
+        control: of the run; a stop is obeyed while they start.
 
     Raises:
-        WorkersUnavailableError: the processes cannot start.
+        WorkersUnavailableError: the processes cannot start, or the run was stopped meanwhile.
     """
 
-    def __init__(self, count: int) -> None:
+    def __init__(self, count: int, control: RunControl | None = None) -> None:
         self._count = count
+        self._control = RunControl() if control is None else control
         self._pool: ProcessPoolExecutor | None = None
         self._processes: set[int] = set()
         self._warm: set[int] = set()
@@ -111,6 +113,8 @@ class LocalWorkers:
             except (concurrent.futures.BrokenExecutor, concurrent.futures.TimeoutError, EOFError, OSError) as error:
                 self.close()
                 reason = error
+            if self._control.stopped:
+                raise WorkersUnavailableError("the run was stopped while its workers started")
         if self._started:
             raise WorkersUnavailableError(
                 f"worker processes cannot be started again ({type(reason).__name__}): is there memory, and room for "
@@ -127,7 +131,12 @@ class LocalWorkers:
         self._pool = ProcessPoolExecutor(self._count, context, initializer=start_worker)
         with _one_thread_environment():
             probes = [self._pool.submit(presence_task, 0.02) for _ in range(self._count)]
-        self._processes = {probe.result(timeout=_START_LIMIT) for probe in probes}
+        # What a worker imports takes seconds, on a starved machine a minute: who stops the run does not wait for it.
+        give_up = time.monotonic() + _START_LIMIT
+        while concurrent.futures.wait(probes, timeout=_TICK).not_done:
+            if self._control.stopped or time.monotonic() > give_up:
+                raise concurrent.futures.TimeoutError
+        self._processes = {probe.result() for probe in probes}
 
     def warm(self, level: int, control: RunControl, task: Callable[..., None], *arguments: Any) -> None:
         """Call once in each process; a process that dies of it is replaced."""
@@ -171,6 +180,11 @@ class LocalWorkers:
         for process in alive & children:
             with contextlib.suppress(ProcessLookupError):
                 os.kill(process, signal.SIGKILL)
+        # Killed in the middle of a message, a worker leaves the pool's thread reading for the rest of it, as long as
+        # anybody could still write that: we could, and never do.
+        results = getattr(pool, "_result_queue", None)
+        if results is not None:
+            results._writer.close()
         pool.shutdown(wait=True, cancel_futures=True)
         self._processes = set()
 
@@ -203,12 +217,13 @@ def checked_executor(executor: str, count: int | None) -> str:
     return address
 
 
-def make_workers(executor: str, count: int | None) -> Workers:
+def make_workers(executor: str, count: int | None, control: RunControl) -> Workers:
     """Workers as ``--executor`` and ``--workers`` name them.
 
     Args:
         executor: "local" or "dask:HOST:PORT".
         count: local processes; all cores by default.
+        control: of the run that wants them.
 
     Raises:
         InputError: as ``checked_executor``.
@@ -219,7 +234,7 @@ def make_workers(executor: str, count: int | None) -> Workers:
         from hpsop_core.runs.dask_workers import DaskWorkers  # an optional dependency
 
         return DaskWorkers(address)
-    return LocalWorkers(default_workers() if count is None else count)
+    return LocalWorkers(default_workers() if count is None else count, control)
 
 
 @contextlib.contextmanager

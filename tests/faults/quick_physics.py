@@ -5,6 +5,8 @@ from __future__ import annotations
 import hashlib
 import os
 import signal
+import struct
+import sys
 import time
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
@@ -231,6 +233,23 @@ def killed_reference(case: Case, level: int, marks: Path, times: int) -> None:
     if made < times:
         (marks / f"{level}-{made}").touch()
         os.kill(os.getpid(), signal.SIGKILL)
+
+
+def half_an_answer(mark: Path) -> None:
+    """An answer of 20 kB of which only the length is ever sent: what a kill between a worker's two writes leaves."""
+    frame = sys._getframe()
+    while "result_queue" not in frame.f_locals:
+        assert frame.f_back is not None
+        frame = frame.f_back
+    frame.f_locals["result_queue"]._writer._send(struct.pack("!i", 20_000))
+    mark.touch()
+    time.sleep(3600)
+
+
+def never_present(seconds: float) -> int:
+    """A worker that is still importing."""
+    time.sleep(3600)
+    return 0
 
 
 @dataclass(frozen=True)

@@ -13,6 +13,7 @@ from run_files import content, small_case, wait_until
 
 from hpsop_core.case.case import load_case
 from hpsop_core.errors import InputError
+from hpsop_core.runs import executor
 from hpsop_core.runs.controller import RunController, front_designs, optimize, planned_case
 from hpsop_core.runs.events import RunEvent
 from hpsop_core.runs.reader import open_run
@@ -69,6 +70,17 @@ def test_stop_acts_within_one_evaluation_also_during_a_pause_or_a_hang(tmp_path:
         run.stop()
         # Evaluations under way have 3 s; these never come back.
         assert run.wait(8.0) and time.monotonic() - asked < 6.0
+
+
+def test_stop_does_not_wait_for_workers_that_still_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setattr(executor, "presence_task", quick_physics.never_present)
+    monkeypatch.setattr(executor, "_START_LIMIT", 20.0)  # so that a red test ends
+    with RunController(tmp_path / "a.hpsop", small_case(), workers=1, physics=physics()) as run:
+        run.start()
+        wait_until(lambda: run.snapshot().state == "running")
+        run.stop()
+        assert run.wait(15.0)
+        assert run.snapshot().state == "stopped" and open_run(run.path).state() == ("stopped", "")
 
 
 def _stands_still(run: RunController) -> bool:

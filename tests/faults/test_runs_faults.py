@@ -7,6 +7,7 @@ import resource
 import signal
 import subprocess
 import sys
+import threading
 import time
 from pathlib import Path
 
@@ -17,6 +18,7 @@ from run_files import content, descendants, is_alive, small_case, wait_until
 
 from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController, optimize
+from hpsop_core.runs.executor import LocalWorkers
 from hpsop_core.runs.reader import RunReader, open_run
 from hpsop_core.runs.store import RunStore
 from hpsop_core.runs.tasks import reference_task
@@ -209,6 +211,22 @@ if __name__ == "__main__":
         process.wait()
     optimize(small_case(), whole, workers=1, physics=physics())
     assert content(path) == content(whole)
+
+
+def test_a_worker_killed_in_the_middle_of_its_answer_holds_nobody_up(tmp_path: Path) -> None:
+    """The pool's own thread waited for the rest of the answer, and closing for that thread, for ever."""
+    mark = tmp_path / "mark"
+    workers = LocalWorkers(1)
+    answers = workers._pool._result_queue  # type: ignore[union-attr]
+    workers.submit(quick_physics.half_an_answer, mark)
+    wait_until(mark.exists, 60.0)
+    closing = threading.Thread(target=workers.close, daemon=True)
+    closing.start()
+    closing.join(20.0)
+    held_up = closing.is_alive()
+    # so that a red test ends
+    answers._writer.close()
+    assert not held_up
 
 
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])

@@ -5,6 +5,8 @@ from __future__ import annotations
 import argparse
 import subprocess
 import sys
+import tomllib
+from pathlib import Path
 
 import pytest
 
@@ -66,6 +68,26 @@ def test_what_libraries_look_for_is_there_again_afterwards() -> None:
         "assert numpy.f2py.get_include() and inspect.getdoc(inspect.getdoc)\n"
     )
     subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True)
+
+
+def test_a_worker_that_the_page_starts_does_not_load_the_page() -> None:
+    """multiprocessing imports the program's main module, the command's script, in each of them."""
+    project = tomllib.loads((Path(__file__).resolve().parents[2] / "pyproject.toml").read_text(encoding="utf-8"))
+    module, _, name = project["project"]["scripts"]["hpsop-explore"].partition(":")
+    command = f"import sys; from {module} import {name}; print(*sys.modules)"
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=True)
+    assert not set(done.stdout.split()) & {"numpy", "viser", "explorer.app"}
+
+
+def test_the_page_s_command_ends_though_a_thread_does_not() -> None:
+    """One that waits for a browser's answer, say: Python would wait for it after everything is closed."""
+    command = (
+        "import atexit, sys, threading, time, types; sys.modules['explorer.app'] = page = types.ModuleType('app');"
+        "page.main = lambda: threading.Thread(target=time.sleep, args=(3600,)).start() or print('closed') or 2;"
+        "atexit.register(print, 'tidied'); from explorer.start import main; sys.exit(main())"
+    )
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=False, timeout=60)
+    assert (done.returncode, done.stdout, done.stderr) == (2, "closed\ntidied\n", "")
 
 
 def _commands(parser: argparse.ArgumentParser) -> set[str]:
