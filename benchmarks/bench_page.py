@@ -76,11 +76,13 @@ def streamed(
 def serve(folder: Path, port: int) -> None:
     """The page on the recommended case, whose Start streams."""
     from explorer.app import Explorer
+    from explorer.server.process import serve_from_here
     from explorer.services import run_keeper
     from hpsop_core.evaluation.evaluate import evaluate
     from hpsop_core.evaluation.reference import Reference, reference_for
     from hpsop_core.runs.tasks import Physics
 
+    serve_from_here()
     case = load_case("dtc-p4119")
     templates = {level: evaluate(case, case.initial.variables, level, reference_for(case, level)) for level in (1, 2)}
     physics = Physics(partial(streamed, templates=templates), reference_for, Reference.from_dict)

@@ -24,6 +24,7 @@ import viser
 from explorer.layout import build_session, build_shared
 from explorer.server.access import Access, origin_of
 from explorer.server.notices import Notices
+from explorer.server.process import serve_from_here
 from explorer.server.quiet import loud_again, quiet
 from explorer.server.security import address_of, free_port, secure_server
 from explorer.server.token import door, token_of
@@ -114,6 +115,8 @@ class Explorer:
         self._gone = threading.Event()
         self.settings = build_shared(self.state, self.services, self.server)
         self._visitors = Visitors(self.server, self._visited)
+        # the run that was on display before may have been a large one
+        self.state.hub.on(("library",), self._visitors.tidy_soon)
         # The initial design stands ready when the first browser asks.
         worker.latest("initial", self._warm_up)
         # The search's imports hold the interpreter for a second: not while the page loads, nor when Start is pressed.
@@ -262,6 +265,7 @@ def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns the exit status."""
+    serve_from_here()
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
     try:
         arguments = _arguments(argv)

@@ -29,7 +29,7 @@ from explorer.server.notices import Notices
 from hpsop_core.errors import InputError
 from hpsop_core.markup import fill
 
-_SCRIPT, _STYLE = "hpsop-access.js", "hpsop-page.css"
+_SCRIPT, _FRAMES, _STYLE = "hpsop-access.js", "hpsop-frames.js", "hpsop-page.css"
 _YEAR = 365 * 24 * 3600
 _HOST = re.compile(r"(?:[A-Za-z0-9._-]{1,253}|\[[0-9A-Fa-f:.]{2,45}\])(?::[0-9]{1,5})?")
 _ORIGIN = re.compile(rf"(https?)://({_HOST.pattern})")
@@ -112,10 +112,10 @@ class Access:
             return self._welcome(kept, bool(in_address))
         if urlsplit(request.path).path == f"/{_SCRIPT}":
             return self._script(host)
+        if urlsplit(request.path).path == f"/{_FRAMES}":
+            return _text(HTTPStatus.OK, _asset("frames.js"), "application/javascript")
         if urlsplit(request.path).path == f"/{_STYLE}":
-            style = _text(HTTPStatus.OK, page_style())
-            style.headers["Content-Type"] = "text/css; charset=utf-8"
-            return style
+            return _text(HTTPStatus.OK, page_style(), "text/css")
         response = answer(connection, request)
         if response is not None and response.headers.get("Content-Type", "").startswith("text/html"):
             self._add_script(response)
@@ -145,12 +145,8 @@ class Access:
             )
         if wants_socket:
             return _text(HTTPStatus.FORBIDDEN, "no token: open the address that the terminal shows, with ?token=...")
-        page = fill(
-            (files("explorer") / "assets" / "refused.html").read_text(encoding="utf-8"), f"http://{host}/?token=..."
-        )
-        response = _text(HTTPStatus.FORBIDDEN, str(page))
-        response.headers["Content-Type"] = "text/html; charset=utf-8"
-        return response
+        page = fill(_asset("refused.html"), f"http://{host}/?token=...")
+        return _text(HTTPStatus.FORBIDDEN, str(page), "text/html")
 
     def _foreign(self, origins: Sequence[str], host: str) -> Response:
         found = _ORIGIN.fullmatch(origins[0]) if len(origins) == 1 else None
@@ -175,17 +171,17 @@ class Access:
 
     def _script(self, host: str) -> Response:
         own = json.dumps([_spelled("http", host), *self._origins])
-        source = (files("explorer") / "assets" / "access.js").read_text(encoding="utf-8")
-        response = _text(HTTPStatus.OK, f"({source})({own});\n")
-        response.headers["Content-Type"] = "application/javascript; charset=utf-8"
-        return response
+        return _text(HTTPStatus.OK, f"({_asset('access.js')})({own});\n", "application/javascript")
 
     def _add_script(self, response: Response) -> None:
         zipped = response.headers.get("Content-Encoding") == "gzip"
         body = bytes(response.body)
         if zipped not in self._page:
             plain = gzip.decompress(body) if zipped else body
-            ours = f'<head><script src="{_SCRIPT}"></script><link rel="stylesheet" href="{_STYLE}">'
+            ours = (
+                f'<head><script src="{_SCRIPT}"></script><script src="{_FRAMES}"></script>'
+                f'<link rel="stylesheet" href="{_STYLE}">'
+            )
             plain = plain.replace(b"<head>", ours.encode(), 1).replace(b"<title>Viser<", b"<title>hpsop<", 1)
             self._page[zipped] = gzip.compress(plain) if zipped else plain
         response.body = self._page[zipped]
@@ -200,10 +196,14 @@ def _query(path: str) -> list[tuple[str, str]]:
         return []
 
 
-def _text(status: HTTPStatus, text: str) -> Response:
+def _text(status: HTTPStatus, text: str, kind: str = "text/plain") -> Response:
     body = text.encode("utf-8")
-    headers = Headers({"Content-Type": "text/plain; charset=utf-8", "Content-Length": str(len(body))})
+    headers = Headers({"Content-Type": f"{kind}; charset=utf-8", "Content-Length": str(len(body))})
     return Response(int(status), status.phrase, headers, body)
+
+
+def _asset(name: str) -> str:
+    return (files("explorer") / "assets" / name).read_text(encoding="utf-8")
 
 
 def _sealed(response: Response, host: str) -> Response:

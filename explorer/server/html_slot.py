@@ -8,6 +8,8 @@ from hpsop_core.errors import HpsopError
 from hpsop_core.markup import Markup, fill
 
 _NOTHING = Markup("")
+# viser orders a panel's elements by a number, which it counts up itself
+_LAST = 1e9
 
 
 def reason_of(error: BaseException) -> str:
@@ -32,11 +34,12 @@ class Slot:
     Args:
         gui: where the element goes.
         content: to begin with. It is markup by type: text from a file or a person is escaped by then.
+        last: below whatever is added to the panel afterwards.
     """
 
-    def __init__(self, gui: viser.GuiApi, content: Markup = _NOTHING) -> None:
+    def __init__(self, gui: viser.GuiApi, content: Markup = _NOTHING, last: bool = False) -> None:
         # viser's encoder knows plain text only
-        self._handle = gui.add_html(str(content))
+        self._handle = gui.add_html(str(content), order=_LAST if last else None)
         self._content = content
 
     def failed(self, error: BaseException) -> None:

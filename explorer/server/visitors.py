@@ -8,8 +8,6 @@ own event loop, in their true order; what has left is not built, or taken down a
 from __future__ import annotations
 
 import contextlib
-import ctypes
-import gc
 import logging
 import threading
 from collections.abc import Callable
@@ -17,6 +15,7 @@ from concurrent.futures import ThreadPoolExecutor
 
 import viser
 
+from explorer.server.process import tidy
 from explorer.server.worker import LatestWorker
 
 _LOG = logging.getLogger("hpsop.explorer")
@@ -53,13 +52,6 @@ def _logged(task: Callable[..., None], *arguments: object) -> None:
         _LOG.exception("the page of a browser could not be built")
 
 
-def _tidy() -> None:
-    """Give back what pages of browsers held: they hang together in circles, and the C library keeps freed memory."""
-    gc.collect()
-    with contextlib.suppress(OSError, AttributeError):
-        ctypes.CDLL(None).malloc_trim(0)
-
-
 class Visitors:
     """Who is there.
 
@@ -91,7 +83,11 @@ class Visitors:
         take_down = visit.leave() if visit is not None else None
         if take_down is not None:
             self._submit(take_down)
-        self._housekeeper.latest("tidy", _tidy)
+        self.tidy_soon()
+
+    def tidy_soon(self) -> None:
+        """Give memory back in a moment: something large has gone."""
+        self._housekeeper.latest("tidy", tidy)
 
     def _make(self, client: viser.ClientHandle, visit: _Visit) -> None:
         if not visit.gone:

@@ -23,10 +23,19 @@ class LatestWorker:
         name: of the thread.
         on_error: told about an exception of a task (which never ends the thread).
         settle: seconds to wait before each task, in which newer ones may replace it.
+        calm: seconds after a gesture's task in which nothing else begins: its answer has to reach the screen.
     """
 
-    def __init__(self, name: str, on_error: Callable[[BaseException], None] | None = None, settle: float = 0.0) -> None:
+    def __init__(
+        self,
+        name: str,
+        on_error: Callable[[BaseException], None] | None = None,
+        settle: float = 0.0,
+        calm: float = 0.0,
+    ) -> None:
         self._settle = settle
+        self._calm = calm
+        self._calm_until = 0.0
         self._first: OrderedDict[str, Callable[[], None]] = OrderedDict()
         self._tasks: OrderedDict[str, Callable[[], None]] = OrderedDict()
         self._condition = threading.Condition()
@@ -90,6 +99,9 @@ class LatestWorker:
                 if self._closed:
                     return
                 self._busy = True
+                calm = self._calm_until - time.monotonic()
+                if calm > 0.0 and not self._first:
+                    self._condition.wait_for(lambda: self._closed or bool(self._first), calm)
             if self._settle:
                 time.sleep(self._settle)
             with self._condition:
@@ -109,4 +121,6 @@ class LatestWorker:
             finally:
                 with self._condition:
                     self._busy = False
+                    if self._pressed:
+                        self._calm_until = time.monotonic() + self._calm
                     self._condition.notify_all()

@@ -27,5 +27,8 @@ class Display(Protocol):
     def show_run(self, picture: RunPicture, first: Callable[[], Shown | None]) -> None:
         """Show a newer picture of the run, or another run and the design that is seen first."""
 
+    def wait_until_drawn(self, timeout: float) -> None:
+        """Until every page has drawn the run, ``timeout`` seconds at most."""
+
     def tell_all(self, topic: str) -> None:
         """Something that is not in the picture changed: "library"."""

@@ -18,8 +18,9 @@ from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.runs.executor import default_workers
 
-# between two pictures of a run: what eyes need; and on a busy machine a rest of so many times what the last one took
-_PICTURE_SECONDS, _PICTURE_REST = 0.25, 2.0
+# between two pictures of a run: what eyes need; and on a busy machine a rest of so many times what it took to make and
+# draw the last one, in which a press is answered at once; drawing is waited for so long at most
+_PICTURE_SECONDS, _PICTURE_REST, _DRAWN_SECONDS = 0.25, 3.0, 1.0
 
 
 class Runs:
@@ -147,6 +148,7 @@ class Runs:
                 return
             picture = keeper.picture()
             self._display.show_run(picture, self._designs.first)
+        self._display.wait_until_drawn(_DRAWN_SECONDS)
         ended = time.monotonic()
         self._rested = max(began + _PICTURE_SECONDS, ended + _PICTURE_REST * (ended - began))
         # the library says what may be deleted and continued: that changes too when the file is given back

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import threading
+import time
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
@@ -140,10 +141,10 @@ class AppState:
             )
             self.picture = picture
             watchers = list(self.sessions.values())
-        self.hub.changed("run")
+        self.hub.changed("run", news=not replaced)
         if not replaced:
             for watcher in watchers:
-                watcher.hub.changed("run")
+                watcher.hub.changed("run", news=True)
             return
         try:
             shown, why = first(), ""
@@ -154,6 +155,14 @@ class AppState:
             watcher.leave_run(shown)
             if why:
                 watcher.notify("The initial design has no numbers", why, "red")
+
+    def wait_until_drawn(self, timeout: float) -> None:
+        """Until every page has drawn the run, ``timeout`` seconds at most."""
+        give_up = time.monotonic() + timeout
+        with self.lock:
+            hubs = [self.hub, *(watcher.hub for watcher in self.sessions.values())]
+        for hub in hubs:
+            hub.wait_until_drawn(max(give_up - time.monotonic(), 0.0))
 
     def ask_to_delete(self, name: str) -> None:
         """Ask whether this run of the library is to be deleted, or no longer for ""."""

@@ -55,9 +55,18 @@ class Hub:
             for topic in topics:
                 self._wanted.setdefault(topic, []).append((f"view {self._serial}", callback))
 
-    def changed(self, *topics: str) -> None:
-        """Tell; a view that wants several of the topics is called once."""
+    def wait_until_drawn(self, timeout: float) -> None:
+        """Until all views have drawn what they were told of, ``timeout`` seconds at most."""
+        self._worker.wait_until_idle(timeout)
+
+    def changed(self, *topics: str, news: bool = False) -> None:
+        """Tell; a view that wants several of the topics is called once.
+
+        Args:
+            topics: of any number.
+            news: whether nobody has asked for it: a run goes on. Then whatever a person waits for is drawn before.
+        """
         with self._lock:
             called = {key: callback for topic in topics for key, callback in self._wanted.get(topic, [])}
         for key, callback in called.items():
-            self._worker.latest(key, callback)
+            self._worker.latest(key, callback, first=not news)

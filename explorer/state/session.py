@@ -24,6 +24,8 @@ _MOST_STARS = 500
 # viser's client holds a batch of messages with 3D nodes in it until the graphics' next frame; curves and tables that
 # travel with them would wait too. So the scene follows a moment later, in a batch of its own.
 _SCENE_SETTLES = 0.06
+# so long after a gesture's answer the news of a run wait: a browser that draws them would show the answer later
+_ANSWER_SECONDS = 0.12
 # width of the left dock, px
 LEFT_DOCK = 340
 # windows narrower than this (px) show the left dock when asked, and the right one has this part of them
@@ -85,7 +87,7 @@ class Session:
         self.infeasible = False
         self.size = (1366, 768)
         self.legends: dict[str, Markup] = {}
-        self.worker = LatestWorker(f"page-{client_id}", self._stumbled)
+        self.worker = LatestWorker(f"page-{client_id}", self._stumbled, calm=_ANSWER_SECONDS)
         self.heavy = LatestWorker(f"scene-{client_id}", self._stumbled, _SCENE_SETTLES)
         # maps and curves by level 2 take seconds: the next design's geometry must not wait for them
         self.slow = LatestWorker(f"maps-{client_id}", self._stumbled)

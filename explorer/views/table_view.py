@@ -60,7 +60,7 @@ class TableView:
             "",
             hint="conditions between commas, for example f1 < 0.95, L_PP > 340; they fade the charts too",
         )
-        self._only.on_update(lambda event: session.worker.latest("table filter", self._type) if event.client else None)
+        self._only.on_update(self._filter)
         self._html = Slot(gui)
         session.hub.on(("run", "selection", "table", "stars"), self.draw, self._html.failed)
         session.hub.on(("filter",), self._filtered, self._html.failed)
@@ -169,6 +169,10 @@ class TableView:
         return table_rows(picture, session.table, session.filters, session.stars)
 
     # ---- filters ---------------------------------------------------------------------------------------------------
+    def _filter(self, event: viser.GuiEvent[Any]) -> None:
+        if event.client is not None:
+            self._session.worker.latest("table filter", self._type, first=True)
+
     def _type(self) -> None:
         try:
             found = parse_filter(self._only.value, self._session.picture)

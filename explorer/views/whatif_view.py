@@ -171,7 +171,7 @@ class WhatIfView:
 
     def _moved(self, event: viser.GuiEvent[Any]) -> None:
         if event.client_id is not None:
-            self._session.worker.latest("what-if", self._answer)
+            self._session.worker.latest("what-if", self._answer, first=True)
 
     def _answer(self, level: int = 1) -> None:
         try:

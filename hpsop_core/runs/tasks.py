@@ -37,7 +37,7 @@ LearnFunction: TypeAlias = Callable[[Case, Any, Sequence[Mapping[str, Any]]], tu
 """(case, reference, solved designs' JSON) -> the reference with what was learnt, and how far off that is, by name; the
 reference as it was, and nothing, where the designs are too few."""
 
-_NICENESS = 5
+_NICENESS = 10
 _PR_SET_PDEATHSIG = 1
 _threads_pinned = False
 

@@ -65,6 +65,22 @@ def test_screenshot_downloads_a_picture(explorer, page):
         assert len(picture.convert("RGB").getcolors(maxcolors=2**24)) > 50  # a ship, not one colour
 
 
+def test_nothing_is_drawn_while_nothing_moves(explorer, page):
+    """viser draws a frame a second as a safety net; in software each holds a small machine's cores (frames.js)."""
+    count = """() => new Promise((done) => {
+        const context = document.querySelector("canvas[data-engine]").getContext("webgl2");
+        const draw = context.drawElements;
+        const moments = new Set();
+        context.drawElements = function (...all) {
+            moments.add(Math.round(performance.now() / 500));
+            draw.apply(this, all);
+        };
+        setTimeout(() => { context.drawElements = draw; done(moments.size); }, 2400);
+    })"""
+    # what the opening still had to draw may come first
+    assert min(page.evaluate(count) for _ in range(2)) <= 1
+
+
 def test_views_make_room_hide_the_hull_and_are_saved_at_any_size(explorer, page):
     session = session_of(explorer)
     client = explorer.server.get_clients()[session.client_id]

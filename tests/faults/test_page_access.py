@@ -111,7 +111,13 @@ def test_the_address_leaves_a_cookie_and_loses_its_secret(explorer: Explorer) ->
     cookie = headers["set-cookie"].partition(";")[0]
     status, headers, body = fetch(explorer, "/", Cookie=f"other=1; {cookie}")
     assert status == 200
-    assert body.count(b'<head><script src="hpsop-access.js"></script>') == 1
+    assert body.count(b'<head><script src="hpsop-access.js"></script><script src="hpsop-frames.js"></script>') == 1
+    for name, kind in (
+        ("access.js", "application/javascript"),
+        ("frames.js", "application/javascript"),
+        ("page.css", "text/css"),
+    ):
+        assert fetch(explorer, f"/hpsop-{name}", Cookie=cookie)[1]["content-type"] == f"{kind}; charset=utf-8"
     with connect_as(explorer, f"http://127.0.0.1:{_port(explorer)}", token="", cookie=cookie) as socket_:
         assert socket_.recv(timeout=20)
 

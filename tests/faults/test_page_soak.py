@@ -21,6 +21,7 @@ from test_page_visitors import CAMERA
 
 from explorer.app import Explorer
 from explorer.server import bridge
+from explorer.server.process import serve_from_here
 from explorer.server.security import free_port
 from explorer.views.chart_tabs import chart_tabs
 from hpsop_core.assets import asset_path
@@ -99,12 +100,16 @@ def test_the_page_stays_as_it_is(
     tmp_path: Path, monkeypatch: pytest.MonkeyPatch, caplog: pytest.LogCaptureFixture
 ) -> None:
     caplog.set_level(logging.WARNING)
+    # as the command does; whatever else runs in this process afterwards is none the worse
+    serve_from_here()
     channels: list[bridge.Bridge] = []
     begin = bridge.Bridge.__init__
 
     def begun(self: bridge.Bridge, *arguments: Any) -> None:
         begin(self, *arguments)
-        channels.append(self)
+        # those of the busy browsers alone: each holds its whole page
+        if len(channels) < 3:
+            channels.append(self)
 
     monkeypatch.setattr(bridge.Bridge, "__init__", begun)
     demonstration = next(item for item in asset_path("demo").iterdir() if item.name.endswith(".hpsop"))

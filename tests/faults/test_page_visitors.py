@@ -4,9 +4,12 @@ from __future__ import annotations
 
 import gc
 import logging
+import subprocess
+import sys
 import threading
 import time
 from collections.abc import Callable
+from pathlib import Path
 from typing import Any
 
 import msgspec
@@ -218,3 +221,27 @@ def test_no_zoom_leads_where_nothing_can_be_drawn() -> None:
     for limits in ((-1e308, 1e308), (0.0, 1e308), (1e16, 1e16 + 4.0), (1.0, 1.0), (2.0, 1.0), (1.0, float("nan"))):
         assert not _seen((limits, (0.0, 1.0)))
         assert not _seen(((0.0, 1.0), limits))
+
+
+def test_threads_take_what_others_have_freed(tmp_path: Path) -> None:
+    """As the C library itself tells: with a stock for each thread a page of many visitors grew for hours."""
+    told = tmp_path / "stocks.xml"
+    program = f"""
+import ctypes, threading
+from explorer.server.process import serve_from_here
+serve_from_here()
+gate = threading.Barrier(6)
+def use():
+    gate.wait()
+    kept = [bytearray(2000) for _ in range(2000)]
+    gate.wait()
+threads = [threading.Thread(target=use) for _ in range(6)]
+[thread.start() for thread in threads], [thread.join() for thread in threads]
+library = ctypes.CDLL(None)
+library.fopen.restype = ctypes.c_void_p
+file = ctypes.c_void_p(library.fopen({str(told)!r}.encode(), b"w"))
+library.malloc_info(0, file)
+library.fclose(file)
+"""
+    subprocess.run([sys.executable, "-c", program], check=True, timeout=60)
+    assert told.read_text().count("<heap nr=") == 1

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import threading
+import time
 from functools import partial
 from pathlib import Path
 from typing import Any
@@ -90,16 +91,34 @@ def test_a_gesture_and_what_follows_from_it_go_before_a_runs_news():
         for name in ("chart", "table", "curves"):
             hub.on(("run",), partial(done.append, f"{name} of the run"))
         hub.on(("tab",), partial(done.append, "the tab"))
+        hub.on(("ready",), partial(done.append, "the curves"))
         gestures = Gestures(worker)
         gestures.on("act", "tab", lambda event: hub.changed("tab"))
         worker.every(lambda: bool(held.wait(10.0)))
-        hub.changed("run")
+        hub.changed("run", news=True)
         gestures.receive(PageEvent("act", name="tab"))
+        # as curves that have been computed meanwhile
+        hub.changed("ready")
         held.set()
         assert worker.wait_until_idle(10.0)
-        assert done == ["the tab", "chart of the run", "table of the run", "curves of the run"]
+        assert done == ["the curves", "the tab", "chart of the run", "table of the run", "curves of the run"]
     finally:
         held.set()
+        worker.close()
+
+
+def test_a_runs_news_leave_a_gestures_answer_the_time_to_reach_the_screen():
+    worker = LatestWorker("test", calm=0.5)
+    first, done = threading.Event(), []
+    try:
+        worker.every(lambda: (done.append("press"), first.set()), first=True)
+        assert first.wait(10.0)
+        worker.every(lambda: done.append("news"))
+        time.sleep(0.02)
+        worker.every(lambda: done.append("next press"), first=True)
+        assert worker.wait_until_idle(10.0)
+        assert done == ["press", "next press", "news"]
+    finally:
         worker.close()
 
 

@@ -48,8 +48,10 @@ class ParetoChart:
         self._saving = saving
         self._background: tuple[tuple[object, ...], Plot] | None = None
         self._html = Slot(gui)
-        # apart from the chart, which is drawn at every selection: what was opened stays open
-        self._words = Slot(gui)
+        # apart from the chart, which is drawn at every selection: what was opened stays open; below the generations'
+        # slider, which a small screen would not show otherwise
+        self._words = Slot(gui, last=True)
+        self._said = NOTHING
         self.limits: Limits = ((0.0, 1.0), (0.0, 1.0))
         topics = ("run", "scrub", "filter", "pins", "selection", "zoom pareto", "size", "layers")
         session.hub.on(topics, self.draw, self._html.failed)
@@ -81,7 +83,7 @@ class ParetoChart:
         key = (picture, options, titles, session.chart_width, self._height())
         if self._background is None or not _same(self._background[0], key):
             self._background = (key, pareto_background(picture, options, titles, session.chart_width, self._height()))
-            self._say_beyond(beyond_fronts(picture, options.generation) if session.archive else Beyond())
+            self._said = _beyond_words(beyond_fronts(picture, options.generation) if session.archive else Beyond())
         keys = [Key("circle", "level1", "level 1 front")]
         if picture.last_of_level(2) is not None:
             keys.append(Key("circle", "level2", "level 2 front"))
@@ -104,10 +106,13 @@ class ParetoChart:
             keys.append(Key("triangle", "pin1", "pinned"))
         rows, names, sentence = newest_families(picture, options.generation)
         words = fill('<p class="standing" data-narrow="1">{}</p>', sentence) if sentence else NOTHING
+        families = NOTHING
         if len(rows) and max(names) < len(rows):
-            words += soft(
+            families = soft(
                 f"×n: n designs that the error of their numbers cannot tell apart; {max(names)} such families."
             )
+        below = families + self._said
+        self._words.show(box(below) if below else NOTHING)
         plot = pareto_chart(picture, self._background[1], self._marks(picture), keys)
         nothing = nothing_feasible(picture)
         if nothing:
@@ -124,16 +129,6 @@ class ParetoChart:
 
         self._saving.keep([Figure("pareto", plot, numbers)])
         self._html.show(box(plot.svg("pareto", PARETO_GESTURES), words))
-
-    def _say_beyond(self, beyond: Beyond) -> None:
-        said = []
-        if beyond.count:
-            who = "1 design" if beyond.count == 1 else f"{beyond.count} designs"
-            words = f"{who} better than a drawn front (by {100.0 * beyond.most:.2g} % in both at most)"
-            said.append(_folded(words, beyond.reasons, beyond.count))
-        if beyond.margin[0]:
-            said.append(_folded(beyond.margin[0], beyond.margin[1:], 0))
-        self._words.show(box(*said) if said else NOTHING)
 
     def _hint(self, plot: Plot) -> None:
         """Where the selected design lies beyond the chart: a mark at the edge, with its numbers."""
@@ -188,6 +183,17 @@ def nothing_feasible(picture: RunPicture) -> str:
 
 def _edge(value: float, limits: tuple[float, float]) -> float:
     return min(max(value, limits[0]), limits[1])
+
+
+def _beyond_words(beyond: Beyond) -> Markup:
+    said = []
+    if beyond.count:
+        who = "1 design" if beyond.count == 1 else f"{beyond.count} designs"
+        words = f"{who} better than a drawn front (by {100.0 * beyond.most:.2g} % in both at most)"
+        said.append(_folded(words, beyond.reasons, beyond.count))
+    if beyond.margin[0]:
+        said.append(_folded(beyond.margin[0], beyond.margin[1:], 0))
+    return joined(said)
 
 
 def _folded(words: str, reasons: Sequence[str], count: int) -> Markup:
