@@ -21,7 +21,7 @@ from hpsop_core.evaluation.hull_answer import (
 )
 from hpsop_core.evaluation.physics import basis_for, design_factors
 from hpsop_core.evaluation.reference import Reference
-from hpsop_core.evaluation.result import Evaluation, OpenWaterCurve
+from hpsop_core.evaluation.result import Evaluation, Ok, OpenWaterCurve
 from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.hydro.operating_point import PropellerCurve
 from hpsop_core.typing_aliases import Array
@@ -137,10 +137,11 @@ def resistance_points(
     """Resistance over speed at the evaluation's level, calibrated as the evaluation was.
 
     Where the case fixes speeds, every design is tabulated at the same ones (``common_speeds``), else each over its own
-    ``froude_range``.
+    ``froude_range``. Speeds slower than every condition that the level cannot give, their waves too short for its grid,
+    are left out.
 
     Raises:
-        SolverFailure: the design failed, or a speed cannot be computed.
+        SolverFailure: the design failed, or another speed cannot be computed.
     """
     if not evaluation.ok:
         raise SolverFailure("curves", evaluation.reason)
@@ -148,7 +149,28 @@ def resistance_points(
         froude_numbers = common_speeds(case, evaluation, above, step)
     else:
         froude_numbers = froude_range(evaluation, above, step)
-    return resistance_curve(case, evaluation.variables, evaluation.level, froude_numbers, reference)
+    level, slowest = evaluation.level, min(condition.froude_number for condition in evaluation.conditions)
+    try:
+        return resistance_curve(case, evaluation.variables, level, froude_numbers, reference)
+    except SolverFailure:
+        first = next(
+            k for k, froude in enumerate(froude_numbers) if froude >= slowest or _given(case, evaluation, froude)
+        )
+        if first == 0:
+            raise
+        return resistance_curve(case, evaluation.variables, level, froude_numbers[first:], reference)
+
+
+def _given(case: Case, evaluation: Ok, froude_number: float) -> bool:
+    """Whether the evaluation's level has waves at a Froude number."""
+    basis = basis_for(case, evaluation.level)
+    try:
+        wave_answers(
+            hull_variables(case.hull, evaluation.variables, basis.displaced_volume), evaluation.level, (froude_number,)
+        )
+    except SolverFailure:
+        return False
+    return True
 
 
 @dataclass(frozen=True, eq=False)

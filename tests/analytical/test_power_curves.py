@@ -14,8 +14,11 @@ from hpsop_core.case.case import KNOT, Case, load_case
 from hpsop_core.charts.engine import engine_chart
 from hpsop_core.charts.looks import Look, Sheet
 from hpsop_core.charts.powering import power_chart
+from hpsop_core.errors import SolverFailure
+from hpsop_core.evaluation import curves as speed_curves
 from hpsop_core.evaluation.curves import resistance_points
 from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.hull_answer import HullVariables, WaveAnswer, wave_answers
 from hpsop_core.evaluation.power_curves import PowerCurves, power_curves
 from hpsop_core.evaluation.reference import reference_for
 from hpsop_core.evaluation.result import Ok
@@ -81,6 +84,33 @@ def test_a_speed_that_the_propeller_cannot_give_is_left_out(case: Case, designs:
     points = resistance_points(case, evaluation, reference_for(case, 1), step=0.05)
     heavy = [dataclasses.replace(point, total_resistance=1e3 * point.total_resistance) for point in points]
     assert np.isnan(power_curves(case, evaluation, heavy).service).all()
+
+
+def test_slow_speeds_that_a_level_cannot_give_are_left_out_of_the_curve(
+    case: Case, designs: list[tuple[Look, PowerCurves, Ok]], monkeypatch: pytest.MonkeyPatch
+):
+    """A tanker's condition at Fn 0.18 can be solved by level 2, its waves at 0.15 are too short for the grid."""
+    _, _, evaluation = designs[0]
+    reference = reference_for(case, 1)
+    whole = resistance_points(case, evaluation, reference)
+    conditions = [condition.froude_number for condition in evaluation.conditions]
+
+    def none_beyond(low: float, high: float) -> None:
+        def given(variables: HullVariables, level: int, numbers: tuple[float, ...]) -> tuple[WaveAnswer, ...]:
+            if min(numbers) < low or max(numbers) > high:
+                raise SolverFailure("rankine", "no waves")
+            return wave_answers(variables, level, numbers)
+
+        monkeypatch.setattr(speed_curves, "wave_answers", given)
+
+    least = whole[2].froude_number
+    assert least < min(conditions)
+    none_beyond(least, 1.0)
+    assert resistance_points(case, evaluation, reference) == whole[2:]
+    # what is not slow is no matter of short waves: the failure is told
+    none_beyond(0.0, max(conditions))
+    with pytest.raises(SolverFailure, match="no waves"):
+        resistance_points(case, evaluation, reference)
 
 
 def test_the_chart_tells_powers_profile_and_gain(designs: list[tuple[Look, PowerCurves, Ok]]):
