@@ -13,7 +13,7 @@ from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.evaluate import evaluate
-from hpsop_core.evaluation.levels import TRUTH
+from hpsop_core.evaluation.levels import FAST, TRUTH
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation, Ok
 from hpsop_core.export import tables
@@ -77,7 +77,7 @@ def export_design(
     Args:
         run: the run that has it, or a case.
         design: of a run its id, "initial", "compromise" or "knee"; of a case "initial" or variables, evaluated at
-            level 2.
+            level 2, or at level 1 where the case is searched at level 1 alone.
         folder: made if it is not there.
         formats: any of ``formats.FORMATS``; ``formats.USUAL_FORMATS`` by default.
         force: write into a folder that holds something already; files of the same name are replaced, others stay.
@@ -117,8 +117,11 @@ def _of_case(case: Case, design: int | str | DesignVariables) -> LeavingDesign:
         variables = design
     else:
         raise InputError(f"--design {design}: a case has its initial design only; name a run file for others")
-    reference = reference_for(case, TRUTH.number)
-    evaluation = evaluate(case, variables, TRUTH.number, reference)
+    # A case that is set up with level 1 alone is one for which level 2 has no numbers.
+    alone = case.optimization.level1_generations >= case.optimization.generations
+    level = (FAST if alone else TRUTH).number
+    reference = reference_for(case, level)
+    evaluation = evaluate(case, variables, level, reference)
     if not evaluation.ok:
         raise SolverFailure(evaluation.stage, evaluation.reason)
     label = "initial design" if variables == case.initial.variables else "design"

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import io
+import json
 import zipfile
 from pathlib import Path
 
@@ -81,6 +82,22 @@ def test_a_run_asks_for_a_design_and_takes_no_changes(
     assert main(words) == 2 and "say which design" in capsys.readouterr().err
     assert main([*words, "--design", "initial", "--set", "diameter=9"]) == 2
     assert "--set" in capsys.readouterr().err
+
+
+def test_a_case_without_level_2_leaves_at_level_1(tmp_path: Path) -> None:
+    """As `hpsop hull` sets a ship up at whose speeds level 2 has no numbers."""
+    words = [
+        "export",
+        "dtc-p4119-paper",
+        "--to",
+        str(tmp_path),
+        "--formats",
+        "json",
+        "--set",
+        "optimization.level1_generations=150",
+    ]
+    assert main(words) == 0
+    assert json.loads((tmp_path / "design.json").read_text())["level"] == 1
 
 
 def test_a_folder_with_something_in_it_is_left_alone(run: RunReader, tmp_path: Path) -> None:
