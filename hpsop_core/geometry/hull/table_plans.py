@@ -59,6 +59,8 @@ KNUCKLE_ROOM = 0.03
 CORNER = 0.012
 SKEG_KNOTS = tuple(float(knot) for knot in np.linspace(0.15, 0.85, 6))
 TOPSIDES_KNOTS = (0.25, 0.5, 0.75)
+# Part of the greatest half-breadth: sides that reach less over the end of the waterline close there, a raked stem.
+LITTLE_OVERHANG = 0.05
 
 
 @dataclass(frozen=True, eq=False)
@@ -310,18 +312,22 @@ def topsides_plan(
     held = [Held("z", StraightEdge(draft, height))]
     if walls:
         held.append(Held("y", edge[:, None]))
-    held += [
-        closed for closed, end in ((CLOSED_AFT, 0), (CLOSED_FORWARD, -1))
-        if np.all(surface.control_points[end, :, 1] == 0.0)
-    ]  # fmt: skip
     stations = StationMap(surface.knots_u, surface.control_points[:, 0, 0])
-    low, high = float(stations.control_x[0]), float(stations.control_x[-1])
-    # A patch shorter than the spacing has only the stations at its ends.
-    inside = (table.x > low) & (table.x < high)
-    if not np.any(inside):
-        inside = np.abs(table.x - high) < 1e-9 * (table.x[-1] - table.x[0])
+    ends = float(stations.control_x[0]), float(stations.control_x[-1])
+    # The sides have sections at their ends too, else they would swing there. Where the waterline closes they close with
+    # it if little overhangs; a wide overhang ends there flat.
+    at_ends = []
+    for end, x, closed in ((0, ends[0], CLOSED_AFT), (-1, ends[1], CLOSED_FORWARD)):
+        row = np.array([np.interp(x, table.x, column) for column in table.y.T])
+        little = LITTLE_OVERHANG * float(np.max(table.y))
+        if edge[end] == 0.0 and np.max(np.interp(above, table.z, row), initial=0.0) < little:
+            held.append(closed)
+        else:
+            at_ends.append((x, row))
+    near = 1e-9 * float(table.x[-1] - table.x[0])
+    inside = (table.x > ends[0] + near) & (table.x < ends[1] - near)
     sections = []
-    for x, row in zip(table.x[inside], table.y[inside], strict=True):
+    for x, row in [*zip(table.x[inside], table.y[inside], strict=True), *at_ends]:
         at = float(surface.evaluate(stations.u(np.array([x])), np.array([1.0]))[0, 0, 1])
         widths = np.array([at]) if walls else np.interp(above, table.z, row)
         heights = np.array([height]) if walls else above
