@@ -158,12 +158,14 @@ def _over_the_waterline(
     # Where two of them meet both turn, and a flat end follows its rim; other ends are shared with patches that stay.
     free = {(name, end) for name, (_, end, _) in joints.items()} | {(other, end) for other, _, end in joints.values()}
     free |= {(name, 0 if end == "first" else -1) for name, end in parent.caps}
+    # The waterline runs into stem and stern within a span of theirs: both sides of it get the same further knots there.
+    near_ends = {above: _where_it_closes(surfaces[below], breadth) for above, below in parent.along.items()}
+    finer = {name: surfaces[name].with_knots_u(near_ends[name]) for name in parent.along}
+    lower = {below: surfaces[below].with_knots_u(near_ends[above]) for above, below in parent.along.items()}
     for width in _WIDTHS:
         knots = _beside(width, False)
         found = {
-            above: _risen(
-                surfaces[above], surfaces[below], knots, [end for name, end in free if name == above], breadth
-            )
+            above: _risen(finer[above], lower[below], knots, [end for name, end in free if name == above], breadth)
             for above, below in parent.along.items()
         }
         for name, (other, end, its_end) in joints.items():
@@ -174,8 +176,16 @@ def _over_the_waterline(
             (_distance(found[name].transposed(), surfaces[name].transposed(), knots) for name in found), default=0.0
         )
         if off <= _FURTHEST * length:
-            return found, off
+            return {**lower, **found}, off
     return {}, 0.0
+
+
+def _where_it_closes(below: NurbsSurface, breadth: float) -> Array:
+    """Knots to be inserted in u beside the ends at which the upper edge of a patch runs into the centreplane."""
+    breaks = np.unique(below.knots_u)
+    closed = below.control_points[[0, -1], -1, 1] < _EDGE[0] * breadth
+    fore, aft = breaks[-1] - (breaks[-1] - breaks[-2]) * _PARTS_AT_ENDS, breaks[1] * _PARTS_AT_ENDS
+    return np.sort(np.concatenate([aft[: len(aft) * int(closed[0])], fore[: len(fore) * int(closed[1])]]))
 
 
 def _risen(
@@ -183,6 +193,7 @@ def _risen(
 ) -> NurbsSurface:
     patch = patch.transposed().with_knots_u(knots).transposed()
     net = patch.control_points.copy()
+    net[:, 0] = below.control_points[:, -1]
     u = np.linspace(0.0, 1.0, 12 * len(np.unique(patch.knots_u)))
     basis = basis_matrix(patch.knots_u, patch.degree_u, u)
     _, _, rising = below.derivatives(u, np.array([1.0]))

@@ -19,6 +19,8 @@ from hpsop_core.typing_aliases import Array
 # Patches that meet a larger one, and whether they lie aft of it.
 SEAMS = {"counter": True, "skeg": True, "bulb": False}
 PLACES = np.linspace(0.0, 1.0, 61)
+# of a waterline, close together where it ends
+ALONG = 0.5 - 0.5 * np.cos(np.linspace(0.0, np.pi, 31))
 KVLCC2 = Path(__file__).parents[1] / "data" / "hulls" / "kvlcc2.csv"
 
 
@@ -67,11 +69,12 @@ def test_the_waterline_has_one_tangent_plane(hull: Hull) -> None:
     kinks = []
     for above, below in hull.parent.along.items():
         for surfaces in (before, ours):
-            topsides = [point_and_normal(surfaces[above], u, 0.0) for u in PLACES[::3]]
-            ship = [point_and_normal(surfaces[below], u, 1.0) for u in PLACES[::3]]
+            topsides = [point_and_normal(surfaces[above], u, 0.0) for u in ALONG]
+            ship = [point_and_normal(surfaces[below], u, 1.0) for u in ALONG]
             assert np.allclose([a[0] for a in topsides], [b[0] for b in ship], atol=1e-6 * hull.length / 100.0)
             cosines = [a[1] @ b[1] for a, b in zip(topsides, ship, strict=True)]
-            smooth = np.array([a[0][1] for a in topsides]) > 0.01 * hull.breadth
+            # the stem's foot and the corner of the stern run out into the centreplane, in an edge
+            smooth = np.array([a[0][1] for a in topsides]) > 2e-3 * hull.breadth
             kinks.append(float(np.max(np.degrees(np.arccos(np.clip(cosines, -1.0, 1.0)))[smooth])))
     assert max(kinks[0::2]) > 2.0 and max(kinks[1::2]) < 1.0
 
@@ -81,9 +84,12 @@ def test_little_moves_and_nothing_opens(hull: Hull) -> None:
     after, moved = faired_seams(hull.parent, before)
     # 18 mm on 355 m: less than the shipped hull's fit leaves of its points there (34 mm at the counter)
     assert 0.0 < moved < 5e-5 * hull.length
-    changed = {name for name, surface in after.items() if surface is not before[name]}
-    assert changed == {*SEAMS, *hull.parent.along}
     line = np.linspace(0.0, 1.0, 101)
+    # the main body has more knots where the waterline closes, and the same points
+    dense = 0.5 - 0.5 * np.cos(np.pi * line)
+    here = {name: (after[name].evaluate(dense, dense), before[name].evaluate(dense, dense)) for name in before}
+    changed = {name for name, points in here.items() if not np.allclose(*points, rtol=0.0, atol=1e-9)}
+    assert changed == {*SEAMS, *hull.parent.along}
     end = np.array([0.0, 1.0])
     for name in SEAMS:
         # both ends in u, and the edges below and above but for the waterline, stay where they were
