@@ -58,6 +58,11 @@ class PanelSet:
     def count(self) -> int:
         return int(self.corners.shape[0])
 
+    @property
+    def columns(self) -> Array:
+        """(22, n) what the far field needs: centre, axes row by row, moments."""
+        return np.ascontiguousarray(np.concatenate([self.centre, self.axes.reshape(-1, 9), self.moments], axis=1).T)
+
 
 def panel_set(corners: Array) -> PanelSet:
     """Local frames and moments of quadrilaterals `corners` (n, 4, 3)."""
@@ -167,25 +172,49 @@ def _bilinear_height(local: Any, j: int, x: float, y: float) -> float:
     return float(z0 * (1 - u) * (1 - v) + z1 * u * (1 - v) + z2 * u * v + z3 * (1 - u) * v)
 
 
-@njit()
-def _dipole_expansion(moments: Any, j: int, x: float, y: float, z: float, r2: float) -> float:
-    """Far field of unit dipoles on panel j at the local point (x, y, z): moments up to the second order."""
-    q = 1.0 / r2
-    area, ixx, iyy, ixy = moments[j, 0], moments[j, 1], moments[j, 2], moments[j, 3]
-    flat = area + q * (-1.5 * (ixx + iyy) + 7.5 * q * (ixx * x * x + 2.0 * ixy * x * y + iyy * y * y))
-    twist = moments[j, 5] + q * (
-        moments[j, 6] * x * x + moments[j, 7] * y * y + moments[j, 8] * z * z + moments[j, 9] * x * y
-    )
-    return float((z * flat + twist) * q * sqrt(q))
+# Rows of the panels' data as the far field reads them, each contiguous over the panels (``PanelSet.columns``): the
+# centre, the local frame, and the moments from _AREA on.
+_AREA, _IXX, _IYY, _IXY, _SIZE, _TRACE, _TXX, _TYY, _TZZ, _TXY = range(12, 22)
 
 
-@njit()
-def _source_expansion(moments: Any, j: int, x: float, y: float, r2: float) -> float:
-    """Far field of unit sources on panel j, taken flat: moments up to the second order."""
-    q = 1.0 / r2
-    area, ixx, iyy, ixy = moments[j, 0], moments[j, 1], moments[j, 2], moments[j, 3]
-    form = ixx * x * x + 2.0 * ixy * x * y + iyy * y * y
-    return float(sqrt(q) * (area + q * (-0.5 * (ixx + iyy) + 1.5 * q * form)))
+# A division by zero is a near panel's, whose far field nobody uses; looked for, it would keep the loop from running on
+# several panels at once.
+@njit(error_model="numpy")
+def _far_field(m: Any, px: float, py: float, pz: float, far2: float, dipole: Any, source: Any, beyond: Any) -> None:
+    """Unit dipoles and sources on all panels at a point, by moments up to the second order, sources on flat panels.
+
+    Writes both, each (n,), and ``beyond``: below zero where the point lies as far away as this needs. ``source`` may be
+    empty: then dipoles alone.
+    """
+    count = m.shape[1]
+    for j in range(count):
+        rx = px - m[0, j]
+        ry = py - m[1, j]
+        rz = pz - m[2, j]
+        r2 = rx * rx + ry * ry + rz * rz
+        x = m[3, j] * rx + m[4, j] * ry + m[5, j] * rz
+        y = m[6, j] * rx + m[7, j] * ry + m[8, j] * rz
+        z = m[9, j] * rx + m[10, j] * ry + m[11, j] * rz
+        q = 1.0 / r2
+        area, ixx, iyy, ixy = m[_AREA, j], m[_IXX, j], m[_IYY, j], m[_IXY, j]
+        form = ixx * x * x + 2.0 * ixy * x * y + iyy * y * y
+        flat = area + q * (-1.5 * (ixx + iyy) + 7.5 * q * form)
+        twist = m[_TRACE, j] + q * (m[_TXX, j] * x * x + m[_TYY, j] * y * y + m[_TZZ, j] * z * z + m[_TXY, j] * x * y)
+        dipole[j] = (z * flat + twist) * q * sqrt(q)
+        size = m[_SIZE, j]
+        beyond[j] = far2 * size * size - r2
+    if source.size == 0:
+        return
+    for j in range(count):
+        rx = px - m[0, j]
+        ry = py - m[1, j]
+        rz = pz - m[2, j]
+        q = 1.0 / (rx * rx + ry * ry + rz * rz)
+        x = m[3, j] * rx + m[4, j] * ry + m[5, j] * rz
+        y = m[6, j] * rx + m[7, j] * ry + m[8, j] * rz
+        area, ixx, iyy, ixy = m[_AREA, j], m[_IXX, j], m[_IYY, j], m[_IXY, j]
+        form = ixx * x * x + 2.0 * ixy * x * y + iyy * y * y
+        source[j] = sqrt(q) * (area + q * (-0.5 * (ixx + iyy) + 1.5 * q * form))
 
 
 @njit()
@@ -239,13 +268,13 @@ def _solid_angle(local: Any, j: int, x: float, y: float, z: float) -> float:
 
 
 @njit()
-def _own_solid_angle(local: Any, moments: Any, j: int, x: float, y: float) -> float:
+def _own_solid_angle(local: Any, m: Any, j: int, x: float, y: float) -> float:
     """Principal value of the dipole influence of bilinear panel j at its own point (x, y).
 
     It is half way between the two sides of the panel. The point is lifted a little towards the outside: on the
     diagonal that the two triangles share, their half angles are undefined.
     """
-    lift = 1e-6 * moments[j, 0] / max(moments[j, 4], 1e-300)
+    lift = 1e-6 * m[_AREA, j] / max(m[_SIZE, j], 1e-300)
     return float(_solid_angle(local, j, x, y, _bilinear_height(local, j, x, y) + lift) - _TWO_PI)
 
 
@@ -270,14 +299,27 @@ def _source_potential(local: Any, j: int, x: float, y: float, z: float) -> float
 
 
 @njit()
-def _body_influence(
-    points: Any, own: Any, blade_count: int, centre: Any, axes: Any, local: Any, moments: Any, far: float
-) -> Any:
+def _local(m: Any, j: int, px: float, py: float, pz: float) -> tuple[float, float, float]:
+    """A point in the local frame of panel j."""
+    rx = px - m[0, j]
+    ry = py - m[1, j]
+    rz = pz - m[2, j]
+    return (
+        m[3, j] * rx + m[4, j] * ry + m[5, j] * rz,
+        m[6, j] * rx + m[7, j] * ry + m[8, j] * rz,
+        m[9, j] * rx + m[10, j] * ry + m[11, j] * rz,
+    )
+
+
+@njit()
+def _body_influence(points: Any, own: Any, blade_count: int, m: Any, local: Any, far: float) -> Any:
     n_points = points.shape[0]
-    n_panels = centre.shape[0]
+    n_panels = m.shape[1]
     dipole = np.zeros((n_points, n_panels))
     source = np.zeros((n_points, n_panels))
-    far2 = far * far
+    beyond = np.zeros(n_panels)
+    far_dipole = np.zeros(n_panels)
+    far_source = np.zeros(n_panels)
     for k in range(blade_count):
         c = cos(_TWO_PI * k / blade_count)
         s = sin(_TWO_PI * k / blade_count)
@@ -285,21 +327,15 @@ def _body_influence(
             px = points[i, 0]
             py = c * points[i, 1] + s * points[i, 2]
             pz = -s * points[i, 1] + c * points[i, 2]
+            _far_field(m, px, py, pz, far * far, far_dipole, far_source, beyond)
             for j in range(n_panels):
-                rx = px - centre[j, 0]
-                ry = py - centre[j, 1]
-                rz = pz - centre[j, 2]
-                r2 = rx * rx + ry * ry + rz * rz
-                x = axes[j, 0, 0] * rx + axes[j, 0, 1] * ry + axes[j, 0, 2] * rz
-                y = axes[j, 1, 0] * rx + axes[j, 1, 1] * ry + axes[j, 1, 2] * rz
-                z = axes[j, 2, 0] * rx + axes[j, 2, 1] * ry + axes[j, 2, 2] * rz
-                size = moments[j, 4]
-                if r2 > far2 * size * size:
-                    dipole[i, j] += _dipole_expansion(moments, j, x, y, z, r2)
-                    source[i, j] += _source_expansion(moments, j, x, y, r2)
+                if beyond[j] < 0.0:
+                    dipole[i, j] += far_dipole[j]
+                    source[i, j] += far_source[j]
                 else:
+                    x, y, z = _local(m, j, px, py, pz)
                     if k == 0 and own[i] == j:
-                        dipole[i, j] += _own_solid_angle(local, moments, j, x, y)
+                        dipole[i, j] += _own_solid_angle(local, m, j, x, y)
                     else:
                         dipole[i, j] += _solid_angle(local, j, x, y, z)
                     source[i, j] += _source_potential(local, j, x, y, z)
@@ -308,20 +344,14 @@ def _body_influence(
 
 @njit()
 def _strip_influence(
-    points: Any,
-    blade_count: int,
-    strip: Any,
-    strip_count: int,
-    centre: Any,
-    axes: Any,
-    local: Any,
-    moments: Any,
-    far: float,
+    points: Any, blade_count: int, strip: Any, strip_count: int, m: Any, local: Any, far: float
 ) -> Any:
     n_points = points.shape[0]
-    n_panels = centre.shape[0]
+    n_panels = m.shape[1]
     dipole = np.zeros((n_points, strip_count))
-    far2 = far * far
+    beyond = np.zeros(n_panels)
+    far_dipole = np.zeros(n_panels)
+    none = np.zeros(0)
     for k in range(blade_count):
         c = cos(_TWO_PI * k / blade_count)
         s = sin(_TWO_PI * k / blade_count)
@@ -329,18 +359,12 @@ def _strip_influence(
             px = points[i, 0]
             py = c * points[i, 1] + s * points[i, 2]
             pz = -s * points[i, 1] + c * points[i, 2]
+            _far_field(m, px, py, pz, far * far, far_dipole, none, beyond)
             for j in range(n_panels):
-                rx = px - centre[j, 0]
-                ry = py - centre[j, 1]
-                rz = pz - centre[j, 2]
-                r2 = rx * rx + ry * ry + rz * rz
-                x = axes[j, 0, 0] * rx + axes[j, 0, 1] * ry + axes[j, 0, 2] * rz
-                y = axes[j, 1, 0] * rx + axes[j, 1, 1] * ry + axes[j, 1, 2] * rz
-                z = axes[j, 2, 0] * rx + axes[j, 2, 1] * ry + axes[j, 2, 2] * rz
-                size = moments[j, 4]
-                if r2 > far2 * size * size:
-                    dipole[i, strip[j]] += _dipole_expansion(moments, j, x, y, z, r2)
+                if beyond[j] < 0.0:
+                    dipole[i, strip[j]] += far_dipole[j]
                 else:
+                    x, y, z = _local(m, j, px, py, pz)
                     dipole[i, strip[j]] += _solid_angle(local, j, x, y, z)
     return dipole
 
@@ -366,10 +390,8 @@ def body_influence(
         np.ascontiguousarray(points, dtype=np.float64),
         own,
         blade_count,
-        panels.centre,
-        panels.axes,
+        panels.columns,
         panels.local,
-        panels.moments,
         far,
     )
     return dipole, source
@@ -387,10 +409,8 @@ def strip_influence(
         blade_count,
         strip.astype(np.int64),
         strip_count,
-        panels.centre,
-        panels.axes,
+        panels.columns,
         panels.local,
-        panels.moments,
         far,
     )
     return result
