@@ -5,5 +5,6 @@ A file for a thought: ``security`` (a server that only its own user can drive), 
 (what a browser may say to a widget), ``uploads`` (files that it may send), ``bridge`` (gestures on charts, told to
 Python), ``html_slot`` (the one door by which HTML goes to a browser), ``widgets`` (values set from Python),
 ``visitors`` (who comes and leaves), ``quiet`` (no traces of viser's in the terminal), ``worker`` (a thread that always
-does the newest thing asked for), ``process`` (what a serving process asks of Python and the C library).
+does the newest thing asked for), ``process`` (what a serving process asks of Python and the C library), ``wakeups``
+(messages from any thread).
 """

@@ -24,6 +24,7 @@ import websockets.asyncio.server as websocket_server
 from viser import _messages
 
 from explorer.server.access import Access
+from explorer.server.wakeups import mend_wakeups
 from hpsop_core.errors import InputError
 
 _PORTS_TO_TRY = 50
@@ -70,6 +71,7 @@ def address_of(host: str, port: int, token: str) -> str:
 
 def secure_server(host: str, port: int, label: str, access: Access) -> viser.ViserServer:
     """Start viser on exactly this host and port, open to whom ``access`` lets in, without share tunnels."""
+    mend_wakeups()
     serve = websocket_server.serve
 
     def guarded_serve(*arguments: Any, **settings: Any) -> Any:

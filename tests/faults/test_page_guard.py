@@ -2,15 +2,20 @@
 
 from __future__ import annotations
 
+import asyncio
 import math
 import socket
+import threading
 import time
+from collections import deque
 from pathlib import Path
 from typing import Any
 
 import msgspec
 import pytest
 from page_client import Hostile
+from viser._messages import GuiCloseModalMessage
+from viser.infra._async_message_buffer import AsyncMessageBuffer
 
 from explorer.app import Explorer
 from explorer.server.guard import check_update
@@ -47,6 +52,34 @@ def test_only_this_machine_is_listened_to(explorer: Explorer) -> None:
         with socket.socket() as probe:
             probe.settimeout(2.0)
             assert probe.connect_ex((address, _port(explorer))) != 0
+
+
+def test_a_message_may_be_queued_while_the_loop_changes_who_waits(explorer: Explorer) -> None:
+    class Changing(deque[Any]):
+        def __iter__(self) -> Any:
+            raise RuntimeError("deque mutated during iteration")
+
+    loop = asyncio.new_event_loop()
+    buffer = AsyncMessageBuffer(loop, persistent_messages=False)
+    try:
+        buffer.message_event._waiters = Changing()  # type: ignore[attr-defined]
+        buffer.push(GuiCloseModalMessage("x"))
+        assert buffer.message_event.is_set()
+        # whoever waits is woken by the loop, although it has been marked already
+        buffer.message_event = type(buffer.message_event)()
+        buffer.push(GuiCloseModalMessage("y"))
+        buffer.message_event.clear()
+
+        async def wait() -> None:
+            waiting = asyncio.ensure_future(buffer.message_event.wait())
+            await asyncio.sleep(0)
+            thread = threading.Thread(target=buffer.push, args=(GuiCloseModalMessage("z"),))
+            thread.start()
+            await asyncio.wait_for(waiting, 10.0)
+
+        loop.run_until_complete(wait())
+    finally:
+        loop.close()
 
 
 def test_nobody_gets_a_share_tunnel_or_an_upload(explorer: Explorer, hostile: Hostile) -> None:
