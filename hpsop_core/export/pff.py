@@ -3,9 +3,9 @@
 There is no public standard of it. What is written follows CAESES' introduction to it (in Chinese,
 https://fangzhenxiu.com/post/429935): a head (diameter, hub, scale, area ratio, mass, inertia, power, blades, material,
 radii, points a section, sense of rotation: 1 is clockwise seen from astern), and for each radius a block that begins
-with ``* r/R``: ratio, radius and chord, then stations from 0 at the leading to 1 at the trailing edge with the ordinates
-of suction and pressure side. The order of pitch, rake, skew, thickness and camber in a block is there in a picture only
-and is stated by a comment here; no other program has read the file yet.
+with ``* r/R``: ratio, radius and chord, then stations from 0 at the leading to 1 at the trailing edge with the
+ordinates of suction and pressure side. The order of pitch, rake, skew, thickness and camber in a block is there in a
+picture only and is stated by a comment here; no other program has read the file yet.
 """
 
 from __future__ import annotations

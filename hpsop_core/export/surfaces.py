@@ -84,7 +84,29 @@ def _is_deck(hull: Hull, surface: NurbsSurface) -> bool:
 
 
 def _to_centreplane(edge: Array, weights: Array, knots: Array, degree: int) -> NurbsSurface:
-    """The ruled surface between a curve (control points, weights) and its foot on the centreplane."""
+    """The ruled surface between a curve (control points, weights) and its foot on the centreplane.
+
+    A stretch of the curve in the centreplane itself, below a stern post, is left out: a strip without width is no face.
+    """
+    edge, weights, knots = _off_the_centreplane(edge, weights, knots, degree)
     foot = edge * np.array([1.0, 0.0, 1.0])
     control, both = np.stack([edge, foot], axis=1), np.stack([weights, weights], axis=1)
     return NurbsSurface(degree, 1, knots, clamped_knots([], 1), control, both)
+
+
+def _off_the_centreplane(edge: Array, weights: Array, knots: Array, degree: int) -> tuple[Array, Array, Array]:
+    """The curve from where it leaves the centreplane on, its control points, weights and knots on [0, 1]."""
+    stands_off = np.flatnonzero(edge[:, 1] != 0.0)
+    if len(stands_off) == 0 or stands_off[0] <= degree:
+        return edge, weights, knots
+    # With the control points before it zero, so is the curve up to this knot; there it is cut, by inserting the knot
+    # until the curve goes through a control point.
+    cut = float(knots[stands_off[0]])
+    extra = np.full(degree - int(np.count_nonzero(knots == cut)), cut)
+    line = NurbsSurface(
+        degree, 1, knots, clamped_knots([], 1), np.stack([edge, edge], axis=1), np.stack([weights] * 2, 1)
+    )
+    finer = line.with_knots_u(extra) if len(extra) else line
+    first = int(np.searchsorted(finer.knots_u, cut)) - 1
+    rest = np.concatenate([[cut], finer.knots_u[first + 1 :]])
+    return finer.control_points[first:, 0], finer.weights[first:, 0], (rest - cut) / (1.0 - cut)

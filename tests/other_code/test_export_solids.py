@@ -11,7 +11,7 @@ import pytest
 from hpsop_core import load_hull, load_propeller, to_geomdl
 from hpsop_core.export.exchange import from_opencascade, from_rhino, opencascade_surface, rhino_surface
 from hpsop_core.export.solids import propeller_solid, sewn_solid, write_iges, write_step
-from hpsop_core.export.surfaces import design_surfaces
+from hpsop_core.export.surfaces import design_surfaces, hull_surfaces
 from hpsop_core.geometry.hull.hull import Hull, load_parent_hull
 from hpsop_core.geometry.nurbs import NurbsSurface
 from hpsop_core.geometry.propeller.mesh import propeller_mesh
@@ -20,6 +20,7 @@ from hpsop_core.geometry.propeller.propeller import load_propeller as load_paren
 
 pytest.importorskip("OCP", reason="OpenCASCADE is an extra: pip install 'hpsop[cad]'")
 
+SERIES_60 = Path(__file__).parents[1] / "data" / "hulls" / "s60_cb060.csv"
 U, V = np.linspace(0.0, 1.0, 17), np.linspace(0.0, 1.0, 13)
 
 
@@ -182,6 +183,22 @@ def test_a_surface_comes_back_from_every_program_as_it_went(shape: str) -> None:
         ):
             # millimetres and back, weights in and out: rounding only
             assert np.allclose(NurbsSurface.from_geomdl(back).evaluate(U, V), points, atol=1e-9)
+
+
+def test_a_flat_end_above_a_post_has_no_strip_without_width() -> None:
+    """Series 60 ends flat at AP above its stern post; on the post the face had no width, which no mesher takes."""
+    ship = load_hull(SERIES_60, length=121.92, draft=6.5)
+    surfaces, _ = hull_surfaces(ship)
+    end = next(part.surface for part in surfaces if part.name == "main end port")
+    inside = np.linspace(0.05, 0.95, 31)
+    edge = end.evaluate(inside, np.array([0.0, 1.0]))
+    assert np.min(edge[:, 0, 1]) > 0.0 and np.all(edge[:, 1, 1] == 0.0)
+    # it is the hull's own edge
+    own = ship.nurbs_patch("main")[0].evaluate(np.zeros(1), np.linspace(0.0, 1.0, 4001))[0]
+    assert np.allclose(edge[:, 0, 1], np.interp(edge[:, 0, 2], own[:, 2], own[:, 1]), atol=1e-3)
+    solid = sewn_solid("hull", surfaces)
+    assert open_edges(solid.shape) == 0
+    assert below(solid.shape, ship.draft) == pytest.approx(ship.hydrostatics.displaced_volume, rel=1e-4)
 
 
 @pytest.mark.parametrize(("body", "size"), [("propeller", 0.6), ("hull", 3.0)])
