@@ -15,7 +15,7 @@ from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation import solvable
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.geometry.foreign import apart
-from hpsop_core.geometry.hull.input import ReadOptions, read_hull, read_table
+from hpsop_core.geometry.hull.input import Axes, ReadOptions, read_hull, read_table
 
 LENGTH, BREADTH, DRAFT = 120.0, 17.0, 6.5
 STATIONS = np.linspace(0.0, LENGTH, 21)
@@ -231,3 +231,58 @@ def test_a_spoilt_table_is_read_or_refused(tmp_path: Path, seed: int) -> None:
     else:
         # What is still read is this hull, within what a lost row of the keel or every second reading may cost.
         assert volume == pytest.approx(8073, rel=0.05)
+
+
+def test_station_numbers_of_a_ship_of_26_metres(tmp_path: Path) -> None:
+    """Numbers 0 to 20 on 26 m were once taken for metres, and a quarter of the ship was lost; both remedies work."""
+    x, z = STATIONS * 26.0 / LENGTH, HEIGHTS * 26.0 / LENGTH
+    y = half_breadths() * 26.0 / LENGTH
+    options = ReadOptions(length=26.0, draft=float(z[9]))
+
+    def table(first: str, labels: np.ndarray) -> Path:
+        path = tmp_path / "tug.csv"
+        rows = [f"{label:g}," + ",".join(f"{v:.5f}" for v in row) for label, row in zip(labels, y, strict=True)]
+        path.write_text("\n".join([first + "," + ",".join(f"wl_{v:.6g}" for v in z), *rows]) + "\n")
+        return path
+
+    numbered = read_table(table("station", np.arange(21)), options)
+    assert numbered.x == pytest.approx(x)
+    doubts = [note for note in numbered.notes if "may be numbers or metres" in note]
+    assert len(doubts) == 1 and doubts[0].endswith("write '# spacing = 1 m' into the file")
+    # As it says: with that line they are metres.
+    assert read_table(table("# spacing = 1 m\nstation", np.arange(21)), options).x == pytest.approx(np.arange(21))
+    # A column that states its unit holds no numbers, and metres that span the length are metres.
+    for first in ("station [m]", "station"):
+        assert read_table(table(first, x), options).x == pytest.approx(x, abs=1e-5)
+    long = "station (mm),wl (mm),half beam (mm)\n" + "".join(
+        f"{1e3 * a:.1f},{1e3 * b:.1f},{1e3 * c:.2f}\n"
+        for a, row in zip(x, y, strict=True)
+        for b, c in zip(z, row, strict=True)
+    )
+    (tmp_path / "long.csv").write_text(long)
+    assert read_table(tmp_path / "long.csv", options).x == pytest.approx(x, abs=1e-4)
+
+
+def test_which_end_station_0_is_is_asked_where_nothing_tells(tmp_path: Path) -> None:
+    """Sections alike at every height have no bow that the form tells; the words of the warning turn the ship."""
+    y = half_breadths()[:, 9:10] * np.linspace(0.8, 1.0, 12)
+    path = tmp_path / "numbers.csv"
+    lines = [f"{k}," + ",".join(f"{v:.4f}" for v in row) for k, row in enumerate(y)]
+    path.write_text("\n".join(["station," + ",".join(f"wl_{z:g}" for z in HEIGHTS), *lines]) + "\n")
+    table = read_table(path, OPTIONS)
+    assert any(note.startswith("warning: neither the file nor its form") for note in table.notes)
+    turned = read_table(path, ReadOptions(length=LENGTH, draft=DRAFT, axes=Axes.from_words("bow=-x")))
+    assert turned.y == pytest.approx(table.y[::-1])
+    assert turned.x == pytest.approx(STATIONS)
+    assert not any("neither the file" in note for note in turned.notes)
+
+
+def test_a_body_that_ends_under_water_behind_its_waterline(tmp_path: Path) -> None:
+    """A submarine at the surface: its tail was left out in silence, 4 % of the volume."""
+    x, z = np.linspace(0.0, 70.0, 29), np.linspace(0.0, 10.0, 21)
+    radius = 5.0 * np.sqrt(1.0 - np.abs((x - 35.0) / 35.0) ** 2.5)
+    y = np.sqrt(np.maximum(radius[:, None] ** 2 - (z - 5.0) ** 2, 0.0))
+    path = tmp_path / "boat.csv"
+    path.write_text(HEADER + "".join(f"{a:g},{b:g},{y[i, k]:.4f}\n" for i, a in enumerate(x) for k, b in enumerate(z)))
+    with pytest.raises(InputError, match=r"boat.csv row \d+: station 7.5 m has [\d.]+ m2 under water, of which the"):
+        read_hull(path, ReadOptions(length=70.0, draft=8.5))

@@ -23,7 +23,8 @@ DEEPEST = 0.6
 # Proportions that ships have, and those beyond which a unit or a full breadth must be wrong.
 USUAL_SLENDER, USUAL_FLAT = (4.0, 11.0), (1.5, 6.0)
 POSSIBLE_SLENDER, POSSIBLE_FLAT = (2.0, 25.0), (0.9, 14.0)
-USUAL_BLOCK = (0.35, 0.92)
+# A waterplane smaller than this part of the plane at that part of the draft belongs to a hull upside down.
+NARROWER, LOW_PART = 0.98, 0.1
 
 
 def check_counts(table: ShipTable) -> None:
@@ -88,7 +89,7 @@ def check_size(table: ShipTable) -> tuple[str, ...]:
     below = int(np.sum(z < draft))
     if below < FEWEST_WATERLINES - 1:
         raise InputError(f"{name}: only {below} waterlines below the draft {draft:g} m; at least 4 are needed")
-    return (*_bottom(table), *_proportions(table, half))
+    return (*_bottom(table), *_proportions(table, half), *_way_up(table))
 
 
 def _bottom(table: ShipTable) -> tuple[str, ...]:
@@ -115,6 +116,21 @@ def _bottom(table: ShipTable) -> tuple[str, ...]:
             "from the hull's lowest point"
         )
     return (f"warning: {text}",)
+
+
+def _way_up(table: ShipTable) -> tuple[str, ...]:
+    """A hull that stands on its head is broad where its bottom should be."""
+    low, top = (
+        float(np.trapezoid([np.interp(part * table.draft, table.z, row) for row in table.y], table.x))
+        for part in (LOW_PART, 1.0)
+    )
+    if top > NARROWER * low:
+        return ()
+    remedy = "state up=-z" if table.rows is None else "count the heights from the keel up"
+    return (
+        f"warning: the hull is broader at {100.0 * LOW_PART:g} % of the draft than at its waterline, as if it stood on "
+        f"its head; if it does, {remedy}",
+    )
 
 
 def _proportions(table: ShipTable, half: float) -> tuple[str, ...]:

@@ -18,7 +18,7 @@ from hpsop_core.geometry.hull.input.matrix_table import is_matrix, read_matrix_t
 from hpsop_core.geometry.hull.input.options import Axes, FileTable, ReadOptions
 from hpsop_core.geometry.hull.input.ship_table import ShipTable, in_ship_axes
 from hpsop_core.geometry.hull.input.slices import sliced
-from hpsop_core.geometry.hull.input.surface_checks import check_between, check_fit
+from hpsop_core.geometry.hull.input.surface_checks import check_areas, check_between, check_fit
 from hpsop_core.geometry.hull.input.understood import UnderstoodHull, understood
 from hpsop_core.geometry.hull.table_stations import HalfBreadths
 from hpsop_core.reading import LARGEST_MESH, check_regular
@@ -97,6 +97,7 @@ def hull_from_table(table: ShipTable, shaft_height: float | None = None, boss_x:
     parent = parent_from_table(readings, table.length, table.draft, shaft_height, boss_x)
     check_fit(parent, table)
     check_between(parent, table)
+    check_areas(parent, table)
     where = _shaft_notes(parent, shaft_height, boss_x)
     return HullFile(table, parent, understood(table, parent, (*unusual, *where)))
 

@@ -149,7 +149,8 @@ def read_long_table(table: TextTable, options: ReadOptions) -> FileTable:
         units = {role: unit if unit != "ft-in-8" or role == half else "ft" for role, unit in units.items()}
     if half == "full":
         notes.append(f"column '{table.lines[0].cells[places['full']]}' holds full breadths: halved")
-    numbered = "station" not in places
+    # A station in metres is a place, whatever its column is called.
+    numbered = "station" not in places and stated_units.get("number") is None
     if numbered:
         units["number"] = "m"
     rows = _by_station(name, _rows(table, places, units))
@@ -169,7 +170,8 @@ def read_long_table(table: TextTable, options: ReadOptions) -> FileTable:
                 "every station needs every waterline (0 where there is no hull)"
             )
     stated, comments = stated_in(table.comments)
-    origin = None if numbered else origin_of(table.lines[0].cells[places["station"]])
+    along = places["station" if "station" in places else "number"]
+    origin = None if numbered else origin_of(table.lines[0].cells[along])
     if origin is not None:
         stated.setdefault("origin", origin)
     unit = (

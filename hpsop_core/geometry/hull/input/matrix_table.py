@@ -134,8 +134,11 @@ def read_matrix_table(table: TextTable, options: ReadOptions) -> FileTable:
     words = [word for _, label in columns for word in label[0].split()] if not stations_down else (
         [word for label in down for word in label[0].split()]
     )  # fmt: skip
-    role, _ = role_of(re.split(r"[\\/|]", corner)[0]) if corner else (None, None)
-    numbered = role == "number" or any(word in _STATION_WORDS and word != "x" for word in words)
+    role, station_unit = role_of(re.split(r"[\\/|]", corner)[0]) if corner else (None, None)
+    # A station in metres is a place, whatever it is called.
+    numbered = (role == "number" and station_unit is None) or any(
+        word in _STATION_WORDS and word != "x" for word in words
+    )
     origin = origin_of(corner) if corner else None
     if origin is not None:
         stated.setdefault("origin", origin)

@@ -15,6 +15,8 @@ from hpsop_core.typing_aliases import Array, IntArray
 ASSUMED_BREADTH_TO_DRAFT = 2.5
 # Station numbers count tenths or twentieths of Lpp.
 STATION_COUNTS = (20, 10, 40, 100)
+# Metres whose span differs from Lpp by less than this part of it are metres; so do numbers and metres agree.
+SAME_LENGTH = 5e-3
 # LCF aft of LCB by this part of the length is told from rounding: the fuller upper waterlines are at the stern.
 CLEAR_CENTRES = 0.008
 # A waterline this close to the draft, as a part of it, is the waterline of the draft: numbers are rounded in files.
@@ -63,11 +65,22 @@ def _spacing(table: FileTable, options: ReadOptions, length: float | None) -> tu
     last = float(np.max(table.x))
     if length is not None:
         span = float(np.ptp(table.x))
-        if 0.75 * length < span < 1.35 * length:
+        metres = 0.75 * length < span < 1.35 * length
+        count = next(
+            (n for n in STATION_COUNTS if abs(last - n) < 1.01 or abs(np.max(np.floor(table.x)) - n) < 1e-9), None
+        )
+        if count is not None and metres and abs(length - count) > SAME_LENGTH * length:
+            # Either could be meant: numbers run from a station 0 to a station 10 or 20, metres span the length.
+            metres = abs(span - length) <= SAME_LENGTH * length or not {0.0, float(count)} <= set(table.x.tolist())
+            chosen, other = ("metres", length / count) if metres else (f"numbers 0 to {count}", 1.0)
+            return 1.0 if metres else length / count, (
+                f"warning: stations {float(np.min(table.x)):g} to {last:g} on a length of {length:g} m may be numbers "
+                f"or metres: taken as {chosen}; if they are not, write '# spacing = {other:.6g} m' into the file"
+            )
+        if metres:
             return 1.0, "column of stations taken as metres: they span the length"
-        for count in STATION_COUNTS:
-            if abs(last - count) < 1.01 or abs(np.max(np.floor(table.x)) - count) < 1e-9:
-                return length / count, f"station numbers 0 to {count} over Lpp: {length / count:g} m apart"
+        if count is not None:
+            return length / count, f"station numbers 0 to {count} over Lpp: {length / count:g} m apart"
     raise InputError(
         f"{table.name}: the stations are numbers ({float(np.min(table.x)):g} to {last:g}), their distance is unknown; "
         "state the length (numbers 0 to 10 or 0 to 20 are then parts of Lpp), or '# spacing = 5.5 m' in the file"
@@ -196,6 +209,11 @@ def in_ship_axes(table: FileTable, options: ReadOptions, rows: bool = True) -> S
             notes.append(f"bow at {bow} of the station numbers: there the upper waterlines are finer")
         else:
             bow = "+x"
+            if table.numbered and spacing != 1.0 and origin == "auto":
+                notes.append(
+                    "warning: neither the file nor its form tells which end station 0 is: AP assumed; if it is FP, "
+                    "state bow=-x"
+                )
         if origin in ("ap", "fp"):
             notes.append(f"bow at {bow}: x = 0 is at {origin.upper()}")
     if origin == "auto":

@@ -5,6 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from hpsop_core.errors import InputError
+from hpsop_core.geometry.hull.fit_table import LEAST_FLAT_END
 from hpsop_core.geometry.hull.input.mesh import check_holes, without_appendages
 from hpsop_core.geometry.hull.input.ship_table import ShipTable
 from hpsop_core.geometry.hull.input.triangles import ShipTriangles
@@ -14,6 +15,8 @@ STATIONS, WATERLINES, ABOVE = 121, 33, 8
 # A reading this part of the greatest half-breadth below all its neighbours fell into a crack between faces; it is read
 # this part of the length beside it.
 LEAST_DROP, CRACK = 0.005, 5e-4
+# How far inside the end of the mesh a flat end is read, as a part of the length.
+END = 1e-6
 # Deeper than this part of the draft below the baseline there is a dome or a keel.
 LEAST_DOME = 0.01
 
@@ -54,6 +57,11 @@ def sliced(mesh: ShipTriangles) -> ShipTable:
         return _half_breadths(triangles[:candidates][ends[:candidates] >= station], station, z, mesh, lift)
 
     y = np.array([at(float(station)) for station in x])
+    # No triangle crosses the plane of the aftmost station; a transom that lies in it is read a hair before it.
+    transom = at(float(x[0]) + END * mesh.length)
+    wet = z <= mesh.draft * (1.0 + 1e-9)
+    if np.trapezoid(transom[wet], z[wet]) > LEAST_FLAT_END * float(np.max(np.trapezoid(y[:, wet], z[wet], axis=1))):
+        y[0] = np.maximum(y[0], transom)
     cracked = _dropouts(y)
     for k in np.flatnonzero(np.any(cracked, axis=1)):
         station, aside, up = float(x[k]), CRACK * mesh.length, CRACK * mesh.draft

@@ -12,6 +12,9 @@ from hpsop_core.geometry.hull.input.ship_table import ShipTable
 LARGEST_DEVIATION = 0.015
 # How far the surface may pass the table's heights and breadths between the points, as a part of the draft.
 LARGEST_SWING = 0.03
+# How much of a section may be missing from the surface, as a part of the largest section. Tables whose waterlines are
+# far apart lack up to 2.7 % by the trapezoidal rule; what lies beyond the waterline's end is lacking whole.
+LARGEST_LACK = 0.05
 
 
 def worst_patch(parent: ParentHull) -> PatchDeviation | None:
@@ -68,3 +71,23 @@ def check_between(parent: ParentHull, table: ShipTable) -> None:
                     f"{place[2]:.3g} m, the smooth surface ({patch}) swings {float(beyond.max()):.3g} m {what} between "
                     f"the points; {remedy}"
                 )
+
+
+def check_areas(parent: ParentHull, table: ShipTable) -> None:
+    """No part of the table may be missing from the surface, as a body that ends under water aft of the waterline is.
+
+    Raises:
+        InputError: names the station that lacks most.
+    """
+    heights = np.append(table.z[table.z < table.draft], table.draft)
+    given = np.array([2.0 * np.trapezoid(np.interp(heights, table.z, row), heights) for row in table.y])
+    curve = parent.quadrature
+    fitted = np.interp(table.x, curve.curve_x, curve.curve_area, left=0.0, right=0.0)
+    k = int(np.argmax(given - fitted))
+    if given[k] - fitted[k] > LARGEST_LACK * float(np.max(given)):
+        place = table.station_name(float(table.x[k]))
+        raise InputError(
+            f"{table.name}{table.row(k, 0)}: {place} has {given[k]:.3g} m2 under water, of which the fitted surface "
+            f"has {fitted[k]:.3g}: a body that goes on under water beyond the end of its waterline (a submarine, a "
+            f"stern bulb) is not supported; is the draft of {table.draft:g} m right?"
+        )

@@ -7,7 +7,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from hpsop_core.errors import InputError
-from hpsop_core.geometry.hull.input.options import UNITS, ReadOptions
+from hpsop_core.geometry.hull.input.options import UNITS, Axes, ReadOptions
 from hpsop_core.typing_aliases import Array, IntArray
 
 # Lengths between perpendiculars that a file without a unit is taken for, m.
@@ -98,7 +98,7 @@ _TURNS = {
 }
 
 
-def _upright(vertices: Array, faces: IntArray, stated: str) -> tuple[Array, list[str]]:
+def _upright(vertices: Array, faces: IntArray, axes: Axes) -> tuple[Array, list[str]]:
     """Vertices with x along, y across and z up, and what was turned.
 
     A file whose z is the symmetric axis (glTF, many modellers) has y up. Of a half hull neither axis is symmetric: the
@@ -109,8 +109,14 @@ def _upright(vertices: Array, faces: IntArray, stated: str) -> tuple[Array, list
     if int(np.argmax(size)) == 1:
         vertices = vertices[:, [1, 0, 2]] * np.array([1.0, -1.0, 1.0])
         notes.append("the ship lies along y in the file: turned along x")
-    if stated != "auto":
-        return vertices @ _TURNS[stated].T, notes
+    if axes.up != "auto":
+        turned = vertices @ _TURNS[axes.up].T
+        counted_down = float(turned[:, 2].max()) <= 0.05 * float(np.ptp(turned[:, 2]))
+        if axes.up.startswith("-") and axes.waterline != "z0" and counted_down:
+            # Heights were counted from the deck down to the keel: turned over, they begin at the keel.
+            turned = turned - np.array([0.0, 0.0, float(turned[:, 2].min())])
+            notes.append("turned over: z = 0 at the lowest point")
+        return turned, notes
     low, high = vertices.min(axis=0), vertices.max(axis=0)
     size = np.maximum(high - low, 1e-12)
     skew = np.abs(low + high) / size
@@ -189,7 +195,7 @@ def in_ship_axes(file: TriangleFile, options: ReadOptions) -> ShipTriangles:
         InputError: no unit that fits, no symmetry, another size than the length, a draft above the top.
     """
     notes = list(file.notes)
-    vertices, turned = _upright(np.asarray(file.vertices, dtype=np.float64), file.faces, options.axes.up)
+    vertices, turned = _upright(np.asarray(file.vertices, dtype=np.float64), file.faces, options.axes)
     notes += turned
     unit, note = _unit(file, options, float(np.ptp(vertices[:, 0])))
     notes += [note] if note else []
