@@ -188,3 +188,43 @@ def test_other_bad_values() -> None:
     five = np.linspace(0.2, 1.0, 5)
     with pytest.raises(InputError, match="chord_ratio"):
         RadialTable("x", five, five[:4], five, five, five, five, five)
+
+
+@pytest.mark.parametrize(
+    ("column", "title", "scale", "remedy"),
+    [
+        (2, "pitch [m]", 1.5, "divide the pitch by the diameter"),
+        (2, "pitch (deg)", 20.0, "pi r_R tan"),
+        (1, "chord [mm]", 3000.0, "divide the chords by the diameter"),
+        (5, "t/c [%]", 100.0, "divide the thickness by the chord"),
+    ],
+)
+def test_a_title_with_the_unit_of_a_length_is_no_ratio(
+    column: int, title: str, scale: float, remedy: str, tmp_path: Path
+) -> None:
+    """A pitch in metres lies within the limits of P/D and was read as that in silence."""
+    names = HEADER.split(",")
+    names[column] = title
+    rows = [line.split(",") for line in ROWS]
+    for row in rows:
+        row[column] = f"{scale * float(row[column]):.6g}"
+    with pytest.raises(InputError) as caught:
+        read_propeller(write(tmp_path, [",".join(line) for line in (names, *rows)]), 4)
+    assert title in str(caught.value) and remedy in str(caught.value) and "\n" not in str(caught.value)
+
+
+def test_a_blade_of_a_duct_and_skew_in_radians_are_doubted(tmp_path: Path) -> None:
+    assert read_propeller(write(tmp_path, [HEADER, *ROWS]), 4).warnings == ()
+    broad = [*ROWS[:-1], "1.0,0.45,1.075,0,0,0.032,0.012"]
+    assert any(
+        "ducts are not computed" in line for line in read_propeller(write(tmp_path, [HEADER, *broad]), 4).warnings
+    )
+    skewed = [f"{line.split(',')[0]},{','.join(line.split(',')[1:3])},{k / 10},{','.join(line.split(',')[4:])}"
+              for k, line in enumerate(ROWS)]  # fmt: skip
+    doubted = read_propeller(write(tmp_path, [HEADER.replace("skew_deg", "skew"), *skewed]), 4)
+    assert any("call it skew_rad" in line for line in doubted.warnings)
+    # As it says.
+    radians = read_propeller(write(tmp_path, [HEADER.replace("skew_deg", "skew_rad"), *skewed]), 4)
+    assert radians.tip_skew_degrees == pytest.approx(np.degrees(0.5))
+    assert radians.warnings == ()
+    assert read_propeller(write(tmp_path, [HEADER, *skewed]), 4).warnings == ()

@@ -51,6 +51,7 @@ _NAMES = {
         "camber_chord",
     ),
 }
+_NO_RATIOS = ("m", "mm", "cm", "in", "inch", "ft", "%", "percent", "deg", "degree", "degrees", "°", "rad")
 # What the line of names is known by.
 MARKS = ("r_R", "c_D")
 
@@ -62,3 +63,15 @@ def column_of(title: str) -> str | None:
     if title.strip() in COLUMNS:
         return title.strip()
     return next((column for column, names in _NAMES.items() if name in names), None)
+
+
+def wrong_unit(title: str) -> str | None:
+    """The unit in brackets that a ratio cannot have, such as the mm of "chord [mm]", or None.
+
+    A pitch in metres lies within the limits of P/D: the title alone tells it.
+    """
+    column = column_of(title)
+    bracket = re.search(r"[\[(]\s*([^\])]*?)\s*[\])]", title)
+    if column is None or column in ("skew_deg", SKEW_RADIANS) or bracket is None:
+        return None
+    return bracket.group(1) if bracket.group(1).lower() in _NO_RATIOS else None

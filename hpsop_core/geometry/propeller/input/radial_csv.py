@@ -9,7 +9,7 @@ from pathlib import Path
 
 import numpy as np
 
-from hpsop_core.errors import InputError
+from hpsop_core.errors import InputError, shown
 from hpsop_core.geometry.delimited_text import LARGEST_TEXT, Line, TextTable, decoded, is_number, text_table
 from hpsop_core.geometry.propeller.input.columns import (
     COLUMNS,
@@ -17,6 +17,7 @@ from hpsop_core.geometry.propeller.input.columns import (
     SKEW_RADIANS,
     THICKNESS_TO_DIAMETER,
     column_of,
+    wrong_unit,
 )
 from hpsop_core.geometry.propeller.radial_table import RadialTable
 from hpsop_core.reading import check_regular
@@ -25,13 +26,22 @@ from hpsop_core.reading import check_regular
 _LIMITS = {
     "r_R": (0.0, 1.0, "radii are fractions of the tip radius, 0 to 1"),
     "c_D": (0.0, 1.5, "chords are fractions of the diameter, not percent or millimetres"),
-    "P_D": (0.05, 4.0, "pitch is a fraction of the diameter, not percent or metres"),
+    "P_D": (0.05, 4.0, "pitch is a fraction of the diameter, not percent, metres or degrees"),
     "skew_deg": (-120.0, 120.0, "skew is in degrees"),
     "rake_D": (-0.5, 0.5, "rake is a fraction of the diameter, not degrees or percent"),
     "t_c": (0.001, 0.6, "thickness is a fraction of the chord, not percent"),
     "f_c": (-0.15, 0.15, "camber is a fraction of the chord, not percent"),
     THICKNESS_TO_DIAMETER: (0.0, 0.2, "thickness is a fraction of the diameter, not percent or millimetres"),
     SKEW_RADIANS: (-2.1, 2.1, "skew is in radians here"),
+}
+_TO_RATIO = {
+    "r_R": "divide the radii by the tip radius and call the column r_R",
+    "c_D": "divide the chords by the diameter and call the column c_D",
+    "P_D": "divide the pitch by the diameter, or take pi r_R tan(angle) of a pitch angle, and call the column P_D",
+    "rake_D": "divide the rake by the diameter, or take r_R tan(angle)/2 of a rake angle, and call the column rake_D",
+    "t_c": "divide the thickness by the chord and call the column t_c",
+    "f_c": "divide the camber by the chord and call the column f_c",
+    THICKNESS_TO_DIAMETER: "divide the thickness by the diameter and call the column t_D",
 }
 _OPTIONAL = {"skew_deg": "skew", "rake_D": "rake"}
 _MINIMUM_ROWS = 5
@@ -109,6 +119,11 @@ def _places(header: Line, source: str) -> dict[str, int]:
         InputError: one is missing or stands there twice.
     """
     found = [column_of(cell) for cell in header.cells]
+    for cell in header.cells:
+        unit = wrong_unit(cell)
+        if unit is not None:
+            column = column_of(cell) or cell
+            raise InputError(f"{source}, line {header.number}: column {shown(cell)} is in {unit}; {_TO_RATIO[column]}")
     # an unknown name stands for no column at all
     has = {column for column in found if column is not None}
     for column in COLUMNS:

@@ -17,6 +17,10 @@ _USUAL = {
     "hub ratio": (0.12, 0.35),
     "t/c at 0.7 R": (0.015, 0.12),
 }
+# Chord at the tip over that at 0.7 R: nothing or little of open propellers, about 1 of Kaplan blades in a nozzle.
+BROAD_TIP = 0.6
+# Blades are skewed by some degrees or not at all; the largest skews, 2 rad, would be 2 degrees.
+LEAST_SKEW = 2.1
 
 
 @dataclass(frozen=True, eq=False)
@@ -109,13 +113,33 @@ def understood(file: RadialFile) -> UnderstoodPropeller:
         tip_skew_degrees=float(np.degrees(table.skew[-1])),
         tip_rake_ratio=float(table.rake_ratio[-1]),
         assumed=file.notes,
-        warnings=tuple(
-            f"{name} {value:.3g} is outside what ships' propellers have ({low:g} to {high:g}): are unit and Z right?"
-            for name, value in figures.items()
-            for low, high in (_USUAL[name],)
-            if not low <= value <= high
-        ),
+        warnings=(*_blade_doubts(table, file.columns), *_unusual(figures)),
     )
+
+
+def _unusual(figures: dict[str, float]) -> tuple[str, ...]:
+    """The figures that lie outside what ships' propellers have."""
+    return tuple(
+        f"{name} {value:.3g} is outside what ships' propellers have ({low:g} to {high:g}): are unit and Z right?"
+        for name, value in figures.items()
+        for low, high in (_USUAL[name],)
+        if not low <= value <= high
+    )
+
+
+def _blade_doubts(table: RadialTable, columns: tuple[str, ...]) -> tuple[str, ...]:
+    """What the limits of a single number let pass and no open propeller is likely to have."""
+    lines = []
+    tip, at = float(table.chord_ratio[-1]), float(table.at(np.array([0.7])).chord_ratio[0])
+    if tip > BROAD_TIP * at:
+        lines.append(
+            f"the chord at the tip is {tip / at:.2f} of that at 0.7 R, as blades in a duct have it: ducts are not "
+            "computed, the blade is taken as an open propeller's"
+        )
+    skew = float(np.degrees(np.max(np.abs(table.skew))))
+    if 0.0 < skew < LEAST_SKEW and not any("deg" in title.lower() or "rad" in title.lower() for title in columns):
+        lines.append(f"the greatest skew is {skew:.3g} degrees; if the column is in radians, call it skew_rad")
+    return tuple(lines)
 
 
 def read_propeller(path: str | Path, blade_count: int) -> UnderstoodPropeller:
