@@ -17,9 +17,11 @@ from hpsop_core.case.sections import (
 from hpsop_core.case.variables import DesignSpace
 from hpsop_core.geometry.hull.hull import ParentHull
 from hpsop_core.geometry.hull.input import HullFile, ReadOptions
+from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
+from hpsop_core.geometry.room_for_propeller import PropellerRoom, room_for_propeller
 
 # The greatest propeller: this part of the draft, and its tip this part of the draft above the baseline.
-DIAMETER_TO_DRAFT, BASELINE_CLEARANCE = 0.62, 0.03
+DIAMETER_TO_DRAFT, LEAST_DIAMETER_TO_DRAFT, BASELINE_CLEARANCE = 0.62, 0.3, 0.03
 # The second, slower condition, as a part of the service speed.
 SLOW = 0.9
 # What the solvers are made for; below the third number level 2's waves pass through zero, and level 1 alone is far too
@@ -31,17 +33,34 @@ _SLOW_SHIP = (
     "be computed."
 )
 
+_OPEN_SHAFT = (
+    " The run rises over the shaft: the hub was put {0:.4g} m from AP, on an open shaft {1:.3g} m above the "
+    "baseline, where the blades clear the hull; state hull.boss_x and hull.shaft_height."
+)
+
 
 def usual_froude_number(block_coefficient: float) -> float:
     """The service Froude number that suits a block coefficient, CB = 1.08 - 1.68 Fn (Alexander's formula)."""
     return float(np.clip((1.08 - block_coefficient) / 1.68, *FROUDE_LIMITS))
 
 
-def _diameter(parent: ParentHull) -> float:
-    """A propeller that fits: below the counter, above the baseline, within the usual share of the draft."""
-    clear = 2.0 * (parent.shaft_height - BASELINE_CLEARANCE * parent.draft)
-    share = DIAMETER_TO_DRAFT * parent.draft
-    return max(min(share, clear), 0.3 * parent.draft)
+def _propeller_place(parent: ParentHull) -> tuple[PropellerRoom | None, float]:
+    """Where the propeller stands (None: where the hull has it), and the diameter of one that fits, m.
+
+    Above the baseline, within the usual share of the draft, clear of the hull; the shipped blade stands for any.
+    """
+    above_baseline = 2.0 * (parent.shaft_height - BASELINE_CLEARANCE * parent.draft)
+    least = LEAST_DIAMETER_TO_DRAFT * parent.draft
+    greatest = max(min(DIAMETER_TO_DRAFT * parent.draft, above_baseline), least)
+    blade = load_propeller()
+    room = room_for_propeller(
+        parent,
+        lambda diameter: propeller_family(blade, diameter, 4),
+        greatest,
+        least,
+        BASELINE_CLEARANCE * parent.draft,
+    )
+    return room, greatest if room is None else room.diameter
 
 
 def ready_case(
@@ -58,6 +77,7 @@ def ready_case(
     """
     parent, told = file.parent, file.understood
     axes = options.axes
+    room, diameter = _propeller_place(parent)
     hull = HullSection(
         file=path,
         length=round(parent.length, 6),
@@ -68,8 +88,10 @@ def ready_case(
         origin=axes.origin,
         waterline=axes.waterline,
         up=axes.up,
+        boss_x=None if room is None else round(room.boss_x, 6),
+        shaft_height=None if room is None else round(room.shaft_height, 6),
     )
-    diameter = float(f"{_diameter(parent):.3g}")
+    diameter = float(f"{diameter:.3g}")
     initial = InitialSection(
         length=hull.length or parent.length,
         breadth=round(parent.breadth, 6),
@@ -99,6 +121,7 @@ def ready_case(
         description=(
             f"Made by 'hpsop hull' for {Path(path).name}. Check the speeds (Froude numbers that suit CB "
             f"{told.block_coefficient:.3f}), the propeller and the bounds."
+            + (_OPEN_SHAFT.format(room.boss_x, room.shaft_height) if room is not None else "")
             + (_SLOW_SHIP.format(froude) if speeds[1] > froude + 1e-3 else "")
         ),
         hull=hull,

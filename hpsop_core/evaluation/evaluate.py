@@ -113,7 +113,10 @@ def _warnings(design: DesignNumbers, form_violated: bool) -> list[str]:
     clearance = design.propeller.tip_clearance
     warnings = []
     if clearance < 0.0:
-        warnings.append(f"the propeller would cut the hull: tip clearance {clearance:.2f} m; reduce its diameter")
+        warnings.append(
+            f"the propeller would cut the hull: tip clearance {clearance:.2f} m; reduce its diameter, or "
+            "state hull.boss_x further aft or hull.shaft_height lower"
+        )
     if design.baseline_clearance < 0.0:
         warnings.append("the blade tips reach below the baseline; reduce the diameter or raise the draft")
     if form_violated and design.hull.booked_volume is not None:

@@ -10,10 +10,13 @@ import pytest
 import trimesh
 
 from hpsop_core.case.case import Case, load_case
+from hpsop_core.case.ready_case import ready_case
 from hpsop_core.cli.main import main
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation import solvable
 from hpsop_core.evaluation.reference import Reference, reference_for
+from hpsop_core.evaluation.shapes import design_hull, design_propeller
+from hpsop_core.geometry.clearance import propeller_clearance, propeller_plane_x
 from hpsop_core.geometry.foreign import apart
 from hpsop_core.geometry.hull.input import Axes, ReadOptions, read_hull, read_table
 
@@ -286,3 +289,27 @@ def test_a_body_that_ends_under_water_behind_its_waterline(tmp_path: Path) -> No
     path.write_text(HEADER + "".join(f"{a:g},{b:g},{y[i, k]:.4f}\n" for i, a in enumerate(x) for k, b in enumerate(z)))
     with pytest.raises(InputError, match=r"boat.csv row \d+: station 7.5 m has [\d.]+ m2 under water, of which the"):
         read_hull(path, ReadOptions(length=70.0, draft=8.5))
+
+
+def test_a_tug_has_a_case_whose_propeller_has_room(tmp_path: Path) -> None:
+    """L/B 2.9 was no case at all, and where the run rises over the shaft every propeller cut the hull."""
+    x, z = np.linspace(0.0, 26.0, 27), np.linspace(0.0, 3.4, 13)
+    part = np.clip((13.0 - x) / 13.0, 0.0, 1.0)
+    half, keel = 4.5 * (1.0 - 0.22 * part**2.6 - np.clip((x - 13.0) / 13.0, 0.0, 1.0) ** 2), 1.9 * part**1.6
+    above = np.clip((z - keel[:, None]) / (3.4 - keel[:, None]), 0.0, 1.0)
+    y = half[:, None] * above**0.4
+    path = tmp_path / "tug.csv"
+    path.write_text(
+        HEADER + "".join(f"{a:g},{b:.5f},{y[i, k]:.4f}\n" for i, a in enumerate(x) for k, b in enumerate(z))
+    )
+    options = ReadOptions(length=26.0, draft=3.4)
+    file = read_hull(path, options)
+    case = ready_case(file, str(path), options)
+    variables = case.initial.variables
+    assert variables.length_to_breadth == pytest.approx(2.89, abs=0.01)
+    hull, propeller = design_hull(case, variables), design_propeller(case, variables)
+    assert propeller_clearance(file.hull, propeller) < 0.0
+    assert propeller_clearance(hull, propeller) > 0.05 * propeller.diameter
+    # Aft of where the profile meets the shaft, and forward of the transom.
+    assert 0.0 < propeller_plane_x(hull, propeller) < file.parent.boss_end_x
+    assert f"the hub was put {case.hull.boss_x:.4g} m from AP" in case.description
