@@ -12,6 +12,7 @@ from dataclasses import replace
 
 import numpy as np
 
+from hpsop_core.errors import SolverFailure
 from hpsop_core.geometry.propeller.propeller import Propeller, RadialTable, load_propeller, propeller_family
 from hpsop_core.hydro.blade_panels.settings import BladePanelSettings, HubSettings
 from hpsop_core.hydro.blade_panels.solver import forces_of, solve
@@ -116,14 +117,19 @@ def grid_over_the_family() -> Rows:
     members += [("", 4, 0.607, 40.0, 0.0), ("", 5, 0.8, 25.0, 0.1)]
     for name, blades, area, skew, rake in members:
         propeller = propeller_family(skewed_table(skew, rake), 1.0, blades, 1.0, area)
-        coarse, fine = (
-            solve(propeller, advance, SectionDrag.inviscid(), settings).open_water for settings in (OPTIMISER, AUDIT)
-        )
+        label = name or f"Z {blades}, EAR {area:g}" + (f", skew {skew:g} degrees, rake {rake:g} D" if skew else "")
+        try:
+            coarse, fine = (
+                solve(propeller, advance, SectionDrag.inviscid(), settings).open_water
+                for settings in (OPTIMISER, AUDIT)
+            )
+        except SolverFailure as failure:
+            yield label, f"refused: {failure.reason}", ""
+            continue
         thrust = 100.0 * (coarse.thrust_coefficient / fine.thrust_coefficient - 1.0)
         torque = 100.0 * (coarse.torque_coefficient / fine.torque_coefficient - 1.0)
         yield (
-            name or f"Z {blades}, EAR {area:g}" + (f", skew {skew:g} degrees, rake {rake:g} D" if skew else ""),
-            f"{thrust.min():+.2f} to {thrust.max():+.2f}", f"{torque.min():+.2f} to {torque.max():+.2f}",
+            label, f"{thrust.min():+.2f} to {thrust.max():+.2f}", f"{torque.min():+.2f} to {torque.max():+.2f}",
         )  # fmt: skip
 
 
