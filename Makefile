@@ -18,11 +18,14 @@ export OMP_NUM_THREADS := 1
 explore: $(VENV)/installed
 	$(BIN)/hpsop-explore $(ARGS)
 
+# Two files of tests side by side, all that need the browser in one of the two (tests/conftest.py).
+TWO_AT_ONCE := --numprocesses 2 --dist loadfile --no-loadscope-reorder
+
 test: lint chromium
-	$(BIN)/python -m pytest -m "not soak"
+	$(BIN)/python -m pytest -m "not soak" $(TWO_AT_ONCE)
 
 test-core: lint
-	$(BIN)/python -m pytest -m "not soak and not browser"
+	$(BIN)/python -m pytest -m "not soak and not browser" $(TWO_AT_ONCE)
 
 lint: $(VENV)/installed-for-tests
 	$(BIN)/ruff check .

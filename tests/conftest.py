@@ -8,6 +8,7 @@ from __future__ import annotations
 import sys
 from collections.abc import Iterator
 from pathlib import Path
+from typing import Any
 
 import no_calls_out
 import pytest
@@ -60,8 +61,29 @@ def pytest_ignore_collect(collection_path: Path, config: pytest.Config) -> bool 
     return name not in (*OLDEST, "conftest.py") if name else collection_path.name == "browser" or None
 
 
-def pytest_collection_modifyitems(items: list[pytest.Item]) -> None:
+# What waits for other processes most first, so that no long file is left alone at the end.
+FOLDERS = ("browser", "faults", "other_code", "regression", "invariance", "experiment", "analytical")
+
+
+@pytest.hookimpl(optionalhook=True)
+def pytest_xdist_make_scheduler(config: pytest.Config, log: Any) -> Any:
+    """Whole files side by side (``--dist loadfile``), all that drive the browser one after another in one process.
+
+    The browser's software graphics need a core, and two of them take each other's time-outs.
+    """
+    from xdist.scheduler import LoadFileScheduling
+
+    class OneBrowser(LoadFileScheduling):
+        def _split_scope(self, nodeid: str) -> str:
+            return "browser" if nodeid.startswith("tests/browser/") else str(super()._split_scope(nodeid))
+
+    return OneBrowser(config, log) if config.getoption("dist") == "loadfile" else None
+
+
+def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
     here = Path(__file__).parent
+    if hasattr(config, "workerinput"):  # one of the processes side by side
+        items.sort(key=lambda item: FOLDERS.index(item.path.relative_to(here).parts[0]))
     for item in items:
         if item.path.relative_to(here).as_posix() in OLDEST:
             item.add_marker(pytest.mark.oldest)
