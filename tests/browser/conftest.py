@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import os
 import socket
 import time
 from collections.abc import Callable, Iterator
@@ -15,6 +14,7 @@ from playwright.sync_api import Browser, BrowserContext, Page, sync_playwright
 from explorer.app import Explorer
 from explorer.server.security import free_port
 from hpsop_core.case.case import Case
+from tests.patience import patience
 from tests.two_speeds import stated_case
 from tools.chromium import ARGUMENTS, chromium_program
 
@@ -119,13 +119,12 @@ def _any_port() -> int:
 
 
 def wait_until(condition: Callable[[], object], seconds: float = 60.0, what: str = "") -> None:
-    """Poll until true; ``seconds`` is stretched on a machine that is busy with other things.
+    """Poll until true; ``seconds`` are stretched (``patience``).
 
     Raises:
         AssertionError: it did not become true.
     """
-    stretch = max(1.0, os.getloadavg()[0] / (os.cpu_count() or 1))
-    give_up = time.monotonic() + seconds * min(stretch, 10.0)
+    give_up = time.monotonic() + patience(seconds)
     while time.monotonic() < give_up:
         if condition():
             return

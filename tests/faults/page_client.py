@@ -41,7 +41,7 @@ def connect_as(
     headers = {} if cookie is None else {"Cookie": cookie}
     uri = f"ws://{host or f'127.0.0.1:{port}'}"
     # whatever end of a tunnel the address names, the connection goes to the server
-    wire = socket.create_connection(("127.0.0.1", port), timeout=20)
+    wire = socket.create_connection(("127.0.0.1", port), timeout=60)
     return connect(
         uri + (f"/?token={query}" if query else "/"),
         origin=origin,  # type: ignore[arg-type]
@@ -55,7 +55,7 @@ def connect_as(
 
 def fetch(explorer: Explorer, path: str, **headers: str) -> tuple[int, dict[str, str], bytes]:
     """Status, headers (names in lower case) and body of one answer; no redirect is followed."""
-    connection = http.client.HTTPConnection("127.0.0.1", int(explorer.server.get_port()), timeout=20)
+    connection = http.client.HTTPConnection("127.0.0.1", int(explorer.server.get_port()), timeout=60)
     try:
         connection.request("GET", path, headers=headers)
         answer = connection.getresponse()
@@ -84,7 +84,7 @@ class Hostile:
             "image_width": 100,
         }
         self.send(camera)
-        give_up = time.monotonic() + 30.0
+        give_up = time.monotonic() + 60.0
         while not (fresh := set(explorer.state.sessions) - known) and time.monotonic() < give_up:
             time.sleep(0.02)
         self.session = explorer.state.sessions[fresh.pop()]
@@ -101,7 +101,7 @@ class Hostile:
         """The notification that follows such a message."""
         before = len(self.told)
         self.update(widget, **updates)
-        give_up = time.monotonic() + 10.0
+        give_up = time.monotonic() + 60.0
         while len(self.told) == before:
             assert time.monotonic() < give_up, f"nobody was told about {updates}"
             time.sleep(0.01)

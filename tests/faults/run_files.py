@@ -15,6 +15,7 @@ from hpsop_core.case.case import Case, load_case
 from hpsop_core.runs.checksums import Tally, checksum
 from hpsop_core.runs.reader import open_run
 from hpsop_core.runs.schema import APPLICATION_ID, COLUMNS
+from tests.patience import patience
 from tests.two_speeds import TWO_SPEEDS
 
 
@@ -144,8 +145,8 @@ def count_finished(path: Path) -> int:
 
 
 def wait_until(condition: Callable[[], bool], seconds: float = 60.0) -> None:
-    """Return when a condition holds; fail after a while."""
-    give_up = time.monotonic() + seconds
+    """Return when a condition holds; fail after a while (``patience``)."""
+    give_up = time.monotonic() + patience(seconds)
     while not condition():
         assert time.monotonic() < give_up, "waited in vain"
         time.sleep(0.02)

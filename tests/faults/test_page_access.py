@@ -119,7 +119,7 @@ def test_the_address_leaves_a_cookie_and_loses_its_secret(explorer: Explorer) ->
     ):
         assert fetch(explorer, f"/hpsop-{name}", Cookie=cookie)[1]["content-type"] == f"{kind}; charset=utf-8"
     with connect_as(explorer, f"http://127.0.0.1:{_port(explorer)}", token="", cookie=cookie) as socket_:
-        assert socket_.recv(timeout=20)
+        assert socket_.recv(timeout=60)
 
 
 def test_the_page_arrives_zipped_as_well(explorer: Explorer) -> None:
@@ -160,7 +160,7 @@ def test_names_of_this_machine_tunnels_and_allowed_proxies_are_let_in(explorer: 
         (PROXY, f"127.0.0.1:{port}"),
     ):
         with connect_as(explorer, origin, host=host) as socket_:
-            assert socket_.recv(timeout=20), origin
+            assert socket_.recv(timeout=60), origin
 
 
 def test_a_page_that_will_be_refused_knows_it(explorer: Explorer) -> None:

@@ -26,6 +26,7 @@ from explorer.state.run_picture import RunPicture
 from explorer.state.session import Session
 from explorer.views.pareto.picking import _seen
 from hpsop_core.case.case import load_case
+from tests.patience import patience
 from tests.two_speeds import TWO_SPEEDS, stated_case
 
 CAMERA = {
@@ -60,7 +61,7 @@ def _come(explorer: Explorer) -> Any:
 
 
 def _wait(condition: Callable[[], object], what: str, seconds: float = 90.0) -> None:
-    give_up = time.monotonic() + seconds
+    give_up = time.monotonic() + patience(seconds)
     while not condition():
         assert time.monotonic() < give_up, what
         time.sleep(0.05)
@@ -158,7 +159,7 @@ def test_frames_that_make_no_sense_cost_a_line_a_kind(
         # the server ends it by itself
         with pytest.raises(Exception, match=r"1011|closed|no close frame"):
             while True:
-                socket.recv(timeout=20)
+                socket.recv(timeout=60)
     lines = [record.getMessage() for record in caplog.records]
     assert 1 <= len(lines) <= len(frames)
     assert len(set(lines)) == len(lines)

@@ -17,6 +17,7 @@ from hpsop_core.runs import executor
 from hpsop_core.runs.controller import RunController, front_designs, optimize, planned_case
 from hpsop_core.runs.events import RunEvent
 from hpsop_core.runs.reader import open_run
+from tests.patience import patience
 from tests.two_speeds import TWO_SPEEDS
 
 
@@ -36,11 +37,11 @@ def test_pause_resume_stop_and_start_again_change_nothing(tmp_path: Path) -> Non
         controller.resume()
         wait_until(lambda: controller.snapshot().generation >= 3)
         controller.stop()
-        assert controller.wait(10.0)
+        assert controller.wait(patience(10.0))
         assert controller.snapshot().state == "stopped" and open_run(path).state() == ("stopped", "")
         assert content(path)["generations"] == content(whole)["generations"][: open_run(path).progress()[0]]
         controller.start()
-        assert controller.wait(60.0)
+        assert controller.wait(patience(60.0))
         assert controller.snapshot().state == "finished"
     assert content(path) == content(whole)
 
@@ -53,15 +54,15 @@ def test_stop_acts_within_one_evaluation_also_during_a_pause_or_a_hang(tmp_path:
         before = open_run(run.path).progress()[1]
         asked = time.monotonic()
         run.stop()
-        assert run.wait(10.0)
+        assert run.wait(patience(10.0))
         # One evaluation, and the time that a loaded machine needs to end two processes.
-        assert time.monotonic() - asked < 0.3 + 1.5
+        assert time.monotonic() - asked < patience(0.3 + 1.5)
         assert open_run(run.path).progress()[1] <= before + 4
         run.start()
         run.pause()
         wait_until(lambda: run.snapshot().state == "paused", 20.0)
         run.stop()
-        assert run.wait(5.0)
+        assert run.wait(patience(5.0))
     case = small_case(evaluation_time_limit=3000.0)
     with RunController(tmp_path / "b.hpsop", case, workers=2, physics=physics(quick_physics.hanging)) as run:
         run.start()
@@ -69,7 +70,7 @@ def test_stop_acts_within_one_evaluation_also_during_a_pause_or_a_hang(tmp_path:
         asked = time.monotonic()
         run.stop()
         # Evaluations under way have 3 s; these never come back.
-        assert run.wait(8.0) and time.monotonic() - asked < 6.0
+        assert run.wait(patience(8.0)) and time.monotonic() - asked < patience(6.0)
 
 
 def test_stop_does_not_wait_for_workers_that_still_start(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
@@ -79,7 +80,7 @@ def test_stop_does_not_wait_for_workers_that_still_start(tmp_path: Path, monkeyp
         run.start()
         wait_until(lambda: run.snapshot().state == "running")
         run.stop()
-        assert run.wait(15.0)
+        assert run.wait(patience(15.0))
         assert run.snapshot().state == "stopped" and open_run(run.path).state() == ("stopped", "")
 
 

@@ -23,6 +23,7 @@ from hpsop_core.runs.reader import RunReader, open_run
 from hpsop_core.runs.store import RunStore
 from hpsop_core.runs.tasks import reference_task
 from hpsop_core.runs.workers import WorkersUnavailableError
+from tests.patience import patience
 
 HERE = Path(__file__).resolve().parent
 
@@ -205,7 +206,7 @@ if __name__ == "__main__":
         line = next(line for line in process.stdout if line.startswith("state paused"))
         assert "run.hpsop" in line and "goes on when it can be written again" in line
         resource.prlimit(process.pid, resource.RLIMIT_FSIZE, (hard, hard))
-        assert process.wait(timeout=60) == 0
+        assert process.wait(timeout=patience(60.0)) == 0
     finally:
         process.kill()
         process.wait()
@@ -222,7 +223,7 @@ def test_a_worker_killed_in_the_middle_of_its_answer_holds_nobody_up(tmp_path: P
     wait_until(mark.exists, 60.0)
     closing = threading.Thread(target=workers.close, daemon=True)
     closing.start()
-    closing.join(20.0)
+    closing.join(patience(20.0))
     held_up = closing.is_alive()
     # so that a red test ends
     answers._writer.close()
@@ -239,7 +240,7 @@ def test_no_process_is_left_behind_on_any_exit(tmp_path: Path, how: signal.Signa
     family = descendants(process.pid)
     assert len(family) >= 3, "fork server, resource tracker, workers"
     process.send_signal(how)
-    process.wait(timeout=30)
+    process.wait(timeout=patience(30.0))
     wait_until(lambda: not any(is_alive(child) for child in family))
     RunStore(path).close()  # and the file is free
 

@@ -23,6 +23,7 @@ from explorer.services.reading import ReadingProcess, hull_file, kind_of
 from explorer.services.reading_job import Refused
 from hpsop_core.errors import InputError
 from hpsop_core.geometry.hull.input import HullFile, ReadOptions
+from tests.patience import patience
 from tests.two_speeds import stated_case
 
 HULLS = Path(__file__).resolve().parents[1] / "data" / "hulls"
@@ -32,7 +33,7 @@ _PART = 512 * 1024
 
 
 def _until(condition: Callable[[], object], what: str) -> None:
-    give_up = time.monotonic() + 60.0
+    give_up = time.monotonic() + patience(60.0)
     while not condition():
         assert time.monotonic() < give_up, what
         time.sleep(0.02)

@@ -94,13 +94,13 @@ def test_a_gesture_and_what_follows_from_it_go_before_a_runs_news():
         hub.on(("ready",), partial(done.append, "the curves"))
         gestures = Gestures(worker)
         gestures.on("act", "tab", lambda event: hub.changed("tab"))
-        worker.every(lambda: bool(held.wait(10.0)))
+        worker.every(lambda: bool(held.wait(60.0)))
         hub.changed("run", news=True)
         gestures.receive(PageEvent("act", name="tab"))
         # as curves that have been computed meanwhile
         hub.changed("ready")
         held.set()
-        assert worker.wait_until_idle(10.0)
+        assert worker.wait_until_idle(60.0)
         assert done == ["the curves", "the tab", "chart of the run", "table of the run", "curves of the run"]
     finally:
         held.set()
@@ -112,11 +112,11 @@ def test_a_runs_news_leave_a_gestures_answer_the_time_to_reach_the_screen():
     first, done = threading.Event(), []
     try:
         worker.every(lambda: (done.append("press"), first.set()), first=True)
-        assert first.wait(10.0)
+        assert first.wait(60.0)
         worker.every(lambda: done.append("news"))
         time.sleep(0.02)
         worker.every(lambda: done.append("next press"), first=True)
-        assert worker.wait_until_idle(10.0)
+        assert worker.wait_until_idle(60.0)
         assert done == ["press", "next press", "news"]
     finally:
         worker.close()
@@ -127,7 +127,7 @@ def test_what_waits_already_goes_first_once_a_gesture_asks_for_it():
     held = threading.Event()
     done: list[str] = []
     try:
-        worker.every(lambda: bool(held.wait(10.0)))
+        worker.every(lambda: bool(held.wait(60.0)))
         worker.latest("table", lambda: done.append("table"))
         worker.latest("chart", lambda: done.append("old chart"))
         worker.latest("chart", lambda: done.append("chart"), first=True)
@@ -135,7 +135,7 @@ def test_what_waits_already_goes_first_once_a_gesture_asks_for_it():
         worker.latest("chart", lambda: done.append("newer chart"))
         assert worker.waiting("chart") and worker.waiting("table")
         held.set()
-        assert worker.wait_until_idle(10.0)
+        assert worker.wait_until_idle(60.0)
         assert done == ["newer chart", "table"]
     finally:
         held.set()
