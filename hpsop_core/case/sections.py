@@ -56,6 +56,15 @@ class HullSection:
             raise InputError(f"hull: both {given[0]} and {given[1]} are given; keep one of them")
         if given and (self.length is None or self.draft is None):
             raise InputError("hull: a hull from a file needs length (Lpp) and draft, in metres")
+        if self.shaft_height is not None and self.draft is not None and self.shaft_height >= self.draft:
+            raise InputError(
+                f"hull: shaft_height {self.shaft_height:g} m is not under the draft of {self.draft:g} m; both are "
+                "counted from the baseline"
+            )
+        if self.boss_x is not None and self.length is not None and not abs(self.boss_x) < 0.5 * self.length:
+            raise InputError(
+                f"hull: boss_x {self.boss_x:g} m is not in the after half of {self.length:g} m; it is counted from AP"
+            )
         if self.stl and self.stl_unit == "unstated" and self.unit == "auto":
             raise InputError('hull: an STL carries no unit; add unit = "m" (or mm, cm, ft, in)')
 

@@ -11,6 +11,7 @@ import trimesh
 
 from hpsop_core.case.case import Case, load_case
 from hpsop_core.case.ready_case import ready_case
+from hpsop_core.case.sections import HullSection
 from hpsop_core.cli.main import main
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation import solvable
@@ -313,3 +314,10 @@ def test_a_tug_has_a_case_whose_propeller_has_room(tmp_path: Path) -> None:
     # Aft of where the profile meets the shaft, and forward of the transom.
     assert 0.0 < propeller_plane_x(hull, propeller) < file.parent.boss_end_x
     assert f"the hub was put {case.hull.boss_x:.4g} m from AP" in case.description
+
+
+@pytest.mark.parametrize(("field", "value"), [("shaft_height", 39.0), ("boss_x", 500.0)])
+def test_a_propeller_in_the_air_or_before_the_ship_is_refused(field: str, value: float) -> None:
+    """Both were computed as if nothing were wrong."""
+    with pytest.raises(InputError, match=f"hull: {field} .*counted from"):
+        HullSection(file="ship.csv", length=150.0, draft=8.0, **{field: value})
