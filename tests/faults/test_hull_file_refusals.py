@@ -290,6 +290,13 @@ def test_a_body_that_ends_under_water_behind_its_waterline(tmp_path: Path) -> No
     path.write_text(HEADER + "".join(f"{a:g},{b:g},{y[i, k]:.4f}\n" for i, a in enumerate(x) for k, b in enumerate(z)))
     with pytest.raises(InputError, match=r"boat.csv row \d+: station 7.5 m has [\d.]+ m2 under water, of which the"):
         read_hull(path, ReadOptions(length=70.0, draft=8.5))
+    # where less is left out it is said
+    x = np.linspace(0.0, 70.0, 71)
+    radius = 5.0 * np.sqrt(1.0 - np.abs((x - 35.0) / 35.0) ** 2.5)
+    y = np.sqrt(np.maximum(radius[:, None] ** 2 - (z - 5.0) ** 2, 0.0))
+    path.write_text(HEADER + "".join(f"{a:g},{b:g},{y[i, k]:.4f}\n" for i, a in enumerate(x) for k, b in enumerate(z)))
+    warnings = read_hull(path, ReadOptions(length=70.0, draft=6.5)).understood.warnings
+    assert any(line.startswith("station 1 m has 5.") and "m2 under water" in line for line in warnings), warnings
 
 
 def test_a_tug_has_a_case_whose_propeller_has_room(tmp_path: Path) -> None:

@@ -97,9 +97,9 @@ def hull_from_table(table: ShipTable, shaft_height: float | None = None, boss_x:
     parent = parent_from_table(readings, table.length, table.draft, shaft_height, boss_x)
     check_fit(parent, table)
     check_between(parent, table)
-    check_areas(parent, table)
+    lacking = check_areas(parent, table)
     where = _shaft_notes(parent, shaft_height, boss_x)
-    return HullFile(table, parent, understood(table, parent, (*unusual, *where)))
+    return HullFile(table, parent, understood(table, parent, (*unusual, *lacking, *where)))
 
 
 def _shaft_notes(parent: ParentHull, shaft_height: float | None, boss_x: float | None) -> tuple[str, ...]:

@@ -12,9 +12,10 @@ from hpsop_core.geometry.hull.input.ship_table import ShipTable
 LARGEST_DEVIATION = 0.015
 # How far the surface may pass the table's heights and breadths between the points, as a part of the draft.
 LARGEST_SWING = 0.03
-# How much of a section may be missing from the surface, as a part of the largest section. Tables whose waterlines are
-# far apart lack up to 2.7 % by the trapezoidal rule; what lies beyond the waterline's end is lacking whole.
-LARGEST_LACK = 0.05
+# How much of a section may be missing from the surface before it is said, and before it is refused, of the largest
+# section. Tables whose waterlines are far apart lack up to 2.7 % by the trapezoidal rule; what lies beyond the
+# waterline's end is lacking whole, 47 % of a submarine.
+NOTED_LACK, LARGEST_LACK = 0.05, 0.15
 
 
 def worst_patch(parent: ParentHull) -> PatchDeviation | None:
@@ -73,8 +74,11 @@ def check_between(parent: ParentHull, table: ShipTable) -> None:
                 )
 
 
-def check_areas(parent: ParentHull, table: ShipTable) -> None:
+def check_areas(parent: ParentHull, table: ShipTable) -> tuple[str, ...]:
     """No part of the table may be missing from the surface, as a body that ends under water aft of the waterline is.
+
+    Returns:
+        A warning where a station lacks something.
 
     Raises:
         InputError: names the station that lacks most.
@@ -84,10 +88,15 @@ def check_areas(parent: ParentHull, table: ShipTable) -> None:
     curve = parent.quadrature
     fitted = np.interp(table.x, curve.curve_x, curve.curve_area, left=0.0, right=0.0)
     k = int(np.argmax(given - fitted))
-    if given[k] - fitted[k] > LARGEST_LACK * float(np.max(given)):
-        place = table.station_name(float(table.x[k]))
-        raise InputError(
-            f"{table.name}{table.row(k, 0)}: {place} has {given[k]:.3g} m2 under water, of which the fitted surface "
-            f"has {fitted[k]:.3g}: a body that goes on under water beyond the end of its waterline (a submarine, a "
-            f"stern bulb) is not supported; is the draft of {table.draft:g} m right?"
-        )
+    lack = float(given[k] - fitted[k]) / float(np.max(given))
+    if lack <= NOTED_LACK:
+        return ()
+    place = table.station_name(float(table.x[k]))
+    text = (
+        f"{place} has {given[k]:.3g} m2 under water, of which the fitted surface has {fitted[k]:.3g}: a body that goes "
+        "on under water beyond the end of its waterline (a submarine, a stern bulb) is not supported; is the draft of "
+        f"{table.draft:g} m right?"
+    )
+    if lack > LARGEST_LACK:
+        raise InputError(f"{table.name}{table.row(k, 0)}: {text}")
+    return (f"warning: {text}",)
