@@ -27,7 +27,7 @@ class _Gui:
     def add_text(self, _label: str, _value: str) -> Any:
         return self.channel
 
-    def add_html(self, _content: str) -> Any:
+    def add_html(self, _content: str, order: float | None) -> Any:
         return SimpleNamespace()
 
 
