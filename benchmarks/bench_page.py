@@ -108,9 +108,9 @@ def drag(explorer: Any) -> None:
         answers.append(shown)
         select(shown)
 
-    def counted_geometry(variables: DesignVariables) -> Any:
+    def counted_geometry(variables: DesignVariables, *options: Any) -> Any:
         geometries.append(variables)
-        return geometry(variables)
+        return geometry(variables, *options)
 
     session.select, explorer.services.designs.geometry = counted_select, counted_geometry
     busy = time.process_time()
@@ -275,7 +275,7 @@ def clicks(visitor: Visitor) -> None:
                     lambda x=x, y=y: page.mouse.click(x, y),  # type: ignore[misc]
                     "(() => { const t = document.querySelector('[data-chart-tab=open_water]'), "
                     "c = document.querySelector('[data-card]').dataset.card; "
-                    f"return c !== '{before}' && t && t.innerHTML.includes('Design ' + c + ':'); }})()",
+                    f"return c !== '{before}' && t && t.innerHTML.includes('Design ' + c); }})()",
                 )
             )
         time.sleep(0.5)
