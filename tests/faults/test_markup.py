@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from html.parser import HTMLParser
+from pathlib import Path
 
 import pytest
 
@@ -88,3 +89,18 @@ def test_symbols_are_set_with_their_subscripts():
     assert symbol_plain("K_T, 10K_Q") == "KT, 10KQ"
     # after a subscript the pen returns to the line
     assert symbol_svg("C_B [–]") == 'C<tspan class="sub" dy="3">B</tspan><tspan dy="-3"> [–]</tspan>'
+
+
+@pytest.mark.parametrize(
+    ("template", "values"),
+    [
+        ("<td>{}</td>{:.1f}", ("<a>", 2.55)),
+        ("{0}{1}{0}", ("<", Markup("<i>"))),
+        ("{{{}}}{:+,d}{:.1%}", (None, 12345, 0.5)),
+        ("{:>5}{!r}", ("<", "<")),
+        ("{}", (Path("<folder>"),)),
+    ],
+)
+def test_the_quick_way_writes_what_markupsafe_writes(template: str, values: tuple[object, ...]):
+    assert fill(template, *values) == Markup(template).format(*values)
+    assert isinstance(fill(template, *values), Markup)
