@@ -41,7 +41,7 @@ def fill(template: str, *values: object, **named: object) -> Markup:
     """
     if named or not _is_plain(template):
         return Markup(template).format(*values, **named)
-    prepared = []
+    prepared: list[object] = []
     for value in values:
         kind = type(value)
         if kind is str:
