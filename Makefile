@@ -18,8 +18,10 @@ export OMP_NUM_THREADS := 1
 explore: $(VENV)/installed
 	$(BIN)/hpsop-explore $(ARGS)
 
-# Two files of tests side by side, all that need the browser in one of the two (tests/conftest.py).
-TWO_AT_ONCE := --numprocesses 2 --dist loadfile --no-loadscope-reorder
+# `make test TWO_AT_ONCE="--numprocesses 2 --dist loadfile --no-loadscope-reorder"` runs two files of tests side by side,
+# all that need the browser in one of the two (tests/conftest.py). Not by default: once of two whole runs a process of
+# tests ended without a word, and pytest-xdist then waits for ever.
+TWO_AT_ONCE :=
 
 test: lint chromium
 	$(BIN)/python -m pytest -m "not soak" $(TWO_AT_ONCE)
