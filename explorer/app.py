@@ -24,7 +24,6 @@ import viser
 from explorer.layout import build_session, build_shared
 from explorer.server.access import Access, origin_of
 from explorer.server.notices import Notices
-from explorer.server.process import serve_from_here
 from explorer.server.quiet import loud_again, quiet
 from explorer.server.security import address_of, free_port, secure_server
 from explorer.server.token import door, token_of
@@ -265,7 +264,6 @@ def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
 
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns the exit status."""
-    serve_from_here()
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
     try:
         arguments = _arguments(argv)

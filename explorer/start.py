@@ -21,6 +21,8 @@ def main() -> NoReturn:
     """As ``explorer.app.main``, which may end by an exception; does not return."""
     with lean_imports():
         from explorer.app import main as page
+        from explorer.server.process import serve_from_here
+    serve_from_here()
     status = page()
     # What is worth keeping has been closed. Python's own end would wait for every thread of every pool, look through a
     # million objects for a second, and for a lock that a daemon thread held when it was stopped it would wait for ever.

@@ -13,6 +13,7 @@ from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation.hull_answer import (
+    HullVariables,
     ResistancePoint,
     build_hull,
     hull_variables,
@@ -21,7 +22,7 @@ from hpsop_core.evaluation.hull_answer import (
 )
 from hpsop_core.evaluation.physics import basis_for, design_factors
 from hpsop_core.evaluation.reference import Reference
-from hpsop_core.evaluation.result import Evaluation, Ok, OpenWaterCurve
+from hpsop_core.evaluation.result import Evaluation, OpenWaterCurve
 from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.hydro.operating_point import PropellerCurve
 from hpsop_core.typing_aliases import Array
@@ -153,21 +154,19 @@ def resistance_points(
     try:
         return resistance_curve(case, evaluation.variables, level, froude_numbers, reference)
     except SolverFailure:
+        key = hull_variables(case.hull, evaluation.variables, basis_for(case, level).displaced_volume)
         first = next(
-            k for k, froude in enumerate(froude_numbers) if froude >= slowest or _given(case, evaluation, froude)
+            k for k, froude in enumerate(froude_numbers) if froude >= slowest or _has_waves(key, level, froude)
         )
         if first == 0:
             raise
         return resistance_curve(case, evaluation.variables, level, froude_numbers[first:], reference)
 
 
-def _given(case: Case, evaluation: Ok, froude_number: float) -> bool:
-    """Whether the evaluation's level has waves at a Froude number."""
-    basis = basis_for(case, evaluation.level)
+def _has_waves(hull: HullVariables, level: int, froude_number: float) -> bool:
+    """Whether a level can give a hull's waves at a Froude number."""
     try:
-        wave_answers(
-            hull_variables(case.hull, evaluation.variables, basis.displaced_volume), evaluation.level, (froude_number,)
-        )
+        wave_answers(hull, level, (froude_number,))
     except SolverFailure:
         return False
     return True
