@@ -16,17 +16,24 @@ from viser.infra import _async_message_buffer
 
 
 class MarkedEvent(asyncio.Event):
-    """An Event that other threads than its loop's may set; they wake nobody."""
+    """An Event that other threads than its loop's may set; they wake nobody.
+
+    Args:
+        loop: in which it is waited for.
+    """
 
     _value: bool
     _waiters: Any
 
+    def __init__(self, loop: asyncio.AbstractEventLoop) -> None:
+        super().__init__()
+        self._own_loop = loop
+
     def set(self) -> None:
-        """Mark it, and in the loop wake whoever waits, also where it has been marked before."""
+        """Mark it, and in its loop wake whoever waits, also where it has been marked before."""
         self._value = True
-        try:
-            asyncio.get_running_loop()
-        except RuntimeError:
+        # the sender's thread may run a loop of its own
+        if asyncio._get_running_loop() is not self._own_loop:
             return
         for waiter in self._waiters:
             if not waiter.done():
@@ -42,6 +49,6 @@ def mend_wakeups() -> None:
     @wraps(begin)
     def begun(self: Any, *arguments: Any, **settings: Any) -> None:
         begin(self, *arguments, **settings)
-        self.message_event = MarkedEvent()
+        self.message_event = MarkedEvent(self.event_loop)
 
     buffer.__init__ = begun
