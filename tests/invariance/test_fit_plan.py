@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 from dataclasses import replace
+from pathlib import Path
 
 import numpy as np
 import pytest
+from scipy import sparse
+from scipy.optimize import lsq_linear
 
-from hpsop_core.geometry.hull.fit import Section, knots_at
+from hpsop_core import load_hull
+from hpsop_core.geometry.hull.fit import Section, bounded_least_squares, knots_at
 from hpsop_core.geometry.hull.fit_plan import (
     FIRST,
     LOWER_EDGE_ON_CENTREPLANE,
@@ -23,6 +27,7 @@ from hpsop_core.geometry.hull.fit_plan import (
     open_ends,
     upper_edge_at,
 )
+from hpsop_core.geometry.hull.hull import load_parent_hull
 
 DRAFT = 2.0
 KNOTS = knots_at([0.2, 0.4, 0.6, 0.8])
@@ -111,3 +116,34 @@ def test_knots_make_room_for_a_post() -> None:
 def test_a_plan_that_cannot_be_fitted_says_why(plans: list[PatchPlan], words: str) -> None:
     with pytest.raises(ValueError, match=words):
         fit_patches(plans)
+
+
+@pytest.mark.parametrize("seed", [1, 9, 11])
+def test_control_points_between_limits_are_the_best_that_there_are(seed: int) -> None:
+    """As scipy's bounded solver finds them. With 9 and 11 all that is wrong, turned at once, goes round for ever."""
+    dice = np.random.default_rng(seed)
+    left, _, right = np.linalg.svd(dice.normal(size=(30, 24)), full_matrices=False)
+    design = sparse.csr_matrix(left @ np.diag(np.logspace(0.0, -3.0, 24)) @ right)
+    target = design @ (4.0 * dice.normal(size=24))
+    rough = sparse.csr_matrix(1e-4 * np.diff(np.eye(24), n=2, axis=0))
+    fixed = np.full((4, 6), np.nan)
+    fixed[0, :2] = 7.0
+    found = bounded_least_squares(design, target, rough, fixed, (-2.0, 3.0))
+    free = np.isnan(fixed.ravel())
+    whole = np.vstack([design.toarray(), rough.toarray()])
+    wanted = np.append(target, np.zeros(22)) - whole[:, ~free] @ np.full(2, 7.0)
+    best = lsq_linear(whole[:, free], wanted, (-2.0, 3.0), method="bvls", tol=1e-14).x
+    assert np.any(best < -1.999) and np.any(best > 2.999) and np.any((best > -1.9) & (best < 2.9))
+    assert np.all(found.ravel()[~free] == 7.0)
+    assert found.ravel()[free] == pytest.approx(best, abs=1e-6)
+
+
+def test_a_bulb_of_a_few_stations_has_no_fin_in_the_centreplane() -> None:
+    """The DTC read at six stations of its bulb: control points that were held at a limit once and never let go again
+    threw the crown 5.7 m down and gmsh off the solid. Waterlines are 0.75 to 1 m apart there."""
+    read = load_hull(Path(__file__).parents[1] / "data" / "hulls" / "dtc_boss_tip.csv", length=355.0, draft=14.5)
+    u = np.linspace(0.0, 1.0, 401)
+    crowns = [hull.underwater["bulb"].evaluate(u, np.array([1.0]))[:, 0] for hull in (read.parent, load_parent_hull())]
+    x = np.linspace(361.0, 366.0, 51)
+    own, ship = (np.interp(x, crown[:, 0], crown[:, 2]) for crown in crowns)
+    assert float(np.max(np.abs(own - ship))) < 1.0

@@ -21,8 +21,10 @@ from hpsop_core.typing_aliases import Array
 DEGREE = 3
 # Points that a section is resampled to at equal chord length.
 SAMPLES = 81
-# Each round holds the control points that passed a limit; later rounds move few.
-HOLDING_ROUNDS = 4
+# Of the search for the control points that a limit holds: rounds without progress before it goes one by one, and all in
+# all. It is over in five as a rule, in ten at a blunt bulb.
+_PATIENCE = 3
+_MOST_ROUNDS = 300
 
 
 @dataclass(frozen=True)
@@ -267,7 +269,7 @@ def fit_patch(
             v = np.where(pinned, v, moved)
         design = sparse.diags(weight) @ _row_kronecker(left, basis_matrix(knots_v, DEGREE, v))
         for axis, fixed, limits in ((0, fixed_y, None), (1, fixed_z, heights)):
-            net[..., axis + 1] = _solve(design, weight * points[:, axis], rough, fixed, limits)
+            net[..., axis + 1] = bounded_least_squares(design, weight * points[:, axis], rough, fixed, limits)
         net[..., 1] = np.where(np.isnan(fixed_y), np.maximum(net[..., 1], settings.least_half_breadth), net[..., 1])
         surface = NurbsSurface(DEGREE, DEGREE, stations.knots, knots_v, net, np.ones((nu, nv)))
     if surface is None:
@@ -286,30 +288,55 @@ def _spread_of(knots_v: Array, edge: Array) -> PchipInterpolator:
     return PchipInterpolator(fraction, v)
 
 
-def _solve(
+def bounded_least_squares(
     design: sparse.csr_matrix,
     target: Array,
     rough: sparse.csr_matrix,
     fixed: Array,
     limits: tuple[float, float] | None,
 ) -> Array:
-    """Least squares for the free control points; those beyond a limit are held there and the rest solved again."""
+    """The control values that fit best between two limits: bounded least squares, by block principal pivoting.
+
+    In each round values beyond a limit are held at it, and held ones that would rather go back are let go, all at once
+    while that makes them fewer, else one at a time, which ends. Without the letting go each held value throws its
+    neighbours over the other limit, until the net swings from one to the other. (J. Judice, F. Pires: A block principal
+    pivoting algorithm for large-scale strictly monotone linear complementarity problems, Computers & Operations
+    Research 21, 1994; here with two limits.)
+
+    Args:
+        design: (m, nu * nv) basis functions at the points, with the points' weights.
+        target: (m,) coordinates of the points, m, with their weights.
+        rough: (k, nu * nv), whose product with the values shall be small too.
+        fixed: (nu, nv), NaN where the value is free, else the value it keeps, which no limit touches.
+        limits: lowest and highest free value, m; None: any.
+
+    Returns:
+        (nu, nv) values, m.
+    """
     known = ~np.isnan(fixed.ravel())
     values = np.where(known, np.nan_to_num(fixed.ravel()), 0.0)
     normal = (design.T @ design + rough.T @ rough).tocsr()
-    for _ in range(HOLDING_ROUNDS):
-        free = np.flatnonzero(~known)
-        held = np.where(known, values, 0.0)
-        right = design.T @ target - normal @ held
+    towards = design.T @ target
+    low, high = limits or (-np.inf, np.inf)
+    side = np.zeros(len(values), dtype=np.int64)  # -1 held at the lower limit, 1 at the upper one
+    fewest, patience = len(values) + 1, _PATIENCE
+    for _ in range(_MOST_ROUNDS):
+        values[side < 0], values[side > 0] = low, high
+        held = known | (side != 0)
+        free = np.flatnonzero(~held)
+        right = towards - normal @ np.where(held, values, 0.0)
         values[free] = linalg.solve(normal[free][:, free].toarray(), right[free], assume_a="pos")
-        if limits is None:
+        drawn = towards - normal @ values
+        wanted = np.where(side * drawn < 0.0, 0, side)
+        wanted[free] = (values[free] > high).astype(np.int64) - (values[free] < low)
+        wrong = np.flatnonzero(~known & (wanted != side))
+        if len(wrong) == 0:
             break
-        beyond = ~known & ((values < limits[0]) | (values > limits[1]))
-        if not np.any(beyond):
-            break
-        values[beyond] = np.clip(values[beyond], *limits)
-        known |= beyond
-    return np.asarray(values.reshape(fixed.shape))
+        patience = _PATIENCE if len(wrong) < fewest else patience - 1
+        fewest = min(fewest, len(wrong))
+        turned = wrong if patience >= 0 else wrong[-1:]
+        side[turned] = wanted[turned]
+    return np.asarray(np.where(known, values, np.clip(values, low, high)).reshape(fixed.shape))
 
 
 def _deviation(surface: NurbsSurface, u: Array, v: Array, target: Array, pinned: Array) -> PatchFit:
