@@ -18,10 +18,9 @@ export OMP_NUM_THREADS := 1
 explore: $(VENV)/installed
 	$(BIN)/hpsop-explore $(ARGS)
 
-# `make test TWO_AT_ONCE="--numprocesses 2 --dist loadfile --no-loadscope-reorder"` runs two files of tests side by side,
-# all that need the browser in one of the two (tests/conftest.py). Not by default: once of two whole runs a process of
-# tests ended without a word, and pytest-xdist then waits for ever.
-TWO_AT_ONCE :=
+# Two files of tests side by side, all that need the browser in one of the two (tests/conftest.py). One after another:
+# make test TWO_AT_ONCE=
+TWO_AT_ONCE := --numprocesses 2 --dist loadfile --no-loadscope-reorder --max-worker-restart 0
 
 test: lint chromium
 	$(BIN)/python -m pytest -m "not soak" $(TWO_AT_ONCE)

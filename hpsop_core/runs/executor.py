@@ -129,7 +129,7 @@ class LocalWorkers:
         context = multiprocessing.get_context(self.prepare())
         self._warm = set()
         self._pool = ProcessPoolExecutor(self._count, context, initializer=start_worker)
-        with _one_thread_environment():
+        with _one_thread_environment(), _broken_pipes_survived():
             probes = [self._pool.submit(presence_task, 0.02) for _ in range(self._count)]
         # What a worker imports takes seconds, on a starved machine a minute: who stops the run does not wait for it.
         give_up = time.monotonic() + _START_LIMIT
@@ -267,6 +267,20 @@ def _temporary_files_in(folder: Path) -> Iterator[None]:
         yield
     finally:
         tempfile.tempdir = before
+
+
+@contextlib.contextmanager
+def _broken_pipes_survived() -> Iterator[None]:
+    # The pool's threads, which begin here, write to workers that we kill. Python ignores the signal of a broken pipe,
+    # but a library in the same process may have taken that back (gmsh does), and it would end the process.
+    if not hasattr(signal, "SIGPIPE"):
+        yield
+        return
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})
+    try:
+        yield
+    finally:
+        signal.pthread_sigmask(signal.SIG_SETMASK, before)
 
 
 @contextlib.contextmanager

@@ -230,6 +230,26 @@ def test_a_worker_killed_in_the_middle_of_its_answer_holds_nobody_up(tmp_path: P
     assert not held_up
 
 
+def test_workers_killed_with_work_on_its_way_end_nobody_else(tmp_path: Path) -> None:
+    """A library in the same process may have taken back that Python ignores the signal of a broken pipe."""
+    file = tmp_path / "script.py"
+    file.write_text(
+        f"""
+import signal, sys, time
+sys.path.insert(0, {str(HERE.parents[1])!r})
+from hpsop_core.runs.executor import LocalWorkers
+if __name__ == "__main__":
+    signal.signal(signal.SIGPIPE, signal.SIG_DFL)
+    workers = LocalWorkers(1)
+    workers.submit(time.sleep, 60.0)
+    workers.submit(len, bytes(10**6))  # more than a pipe holds: its writer waits for the busy worker
+    time.sleep(0.5)
+    workers.close()
+"""
+    )
+    assert subprocess.run([sys.executable, str(file)], timeout=patience(60.0)).returncode == 0
+
+
 @pytest.mark.parametrize("how", [signal.SIGINT, signal.SIGTERM, signal.SIGHUP, signal.SIGKILL])
 def test_no_process_is_left_behind_on_any_exit(tmp_path: Path, how: signal.Signals) -> None:
     path = tmp_path / "run.hpsop"
