@@ -39,7 +39,7 @@ from hpsop_core.runs.ship import ShipFile, named_files, refuse_changed_ship, wit
 # designs whose numbers stay in memory, 12 to 25 kB each
 _KEPT_DESIGNS = 1000
 _BEYOND_ANY_ID = 2**63  # SQLite's integers end here
-_ORIGIN = COLUMNS["evaluations"].index("origin")
+_LEVEL, _ORIGIN = (COLUMNS["evaluations"].index(name) for name in ("level", "origin"))
 
 
 class NotEvaluatedError(InputError):
@@ -367,12 +367,15 @@ class RunReader:
             NotEvaluatedError: it is not evaluated yet.
         """
         with self._reading() as content:
-            # An initial design has an id below the search's: no look at thousands of others.
-            which = "WHERE id < ? AND origin = 'initial' ORDER BY level <> ? LIMIT 1"
-            row = next(content.rows("evaluations", which, (FIRST_SEARCH_ID, level)), None)
-        if row is None:
+            # An initial design has an id below the search's: no look at thousands of others. Which it is is asked of
+            # records that match their checksums: SQL would pass over one whose origin or level was changed.
+            rows = content.sorted_rows("evaluations", "WHERE id < ?", (FIRST_SEARCH_ID,))
+            found = {row[_LEVEL]: int(row[0]) for row in rows if row[_ORIGIN] == "initial"}
+            if level not in found:
+                content.all_rows("evaluations")  # not there, rather than lost
+        if not found:
             raise NotEvaluatedError(f"{self.path}: its initial design is not evaluated yet; let the run go on")
-        return self.designs([int(row[0])])[0]
+        return self.designs([found.get(level, min(found.values()))])[0]
 
     def known_fronts(self) -> tuple[KnownFront, ...]:
         """The front of every generation finished, in order; see ``fronts``."""

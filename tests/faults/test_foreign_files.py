@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from hypothesis import HealthCheck, given, settings
 from hypothesis import strategies as st
-from test_hostile_input import command, mutated, refused
+from test_hostile_input import SOAK, command, mutated, refused
 
 from hpsop_core import load_hull
 from hpsop_core.errors import InputError
@@ -82,7 +82,7 @@ def test_a_reader_that_hangs_over_a_small_file_is_ended_soon(tmp_path: Path, mon
 def test_fuzz_surfaces_at_length(suffix: str, tmp_path: Path) -> None:
     """A process each: some hundred examples."""
 
-    @settings(max_examples=400, deadline=None, derandomize=True, database=None, suppress_health_check=list(HealthCheck))
+    @settings(SOAK, max_examples=400, suppress_health_check=list(HealthCheck))
     @given(mutated(a_box(tmp_path, suffix)) | st.binary(max_size=300))
     def run(content: bytes) -> None:
         path = tmp_path / f"my.{suffix}"

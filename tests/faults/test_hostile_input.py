@@ -37,7 +37,8 @@ EXAMPLES = settings(
     database=None,
     suppress_health_check=[HealthCheck.too_slow, HealthCheck.function_scoped_fixture],
 )
-SOAK = settings(EXAMPLES, max_examples=5000)
+# long runs look elsewhere each time; pytest's --hypothesis-seed=N repeats one
+SOAK = settings(EXAMPLES, max_examples=5000, derandomize=False)
 
 
 def _box(x0: float, x1: float, half: float, z1: float) -> str:

@@ -150,6 +150,26 @@ def test_a_thousand_flipped_bits_are_found(run_file: Path, sound: dict[str, Any]
     _flips(run_file, sound, tmp_path, 1000, seed=2)
 
 
+@pytest.mark.parametrize("column", ["level", "origin"])
+def test_a_changed_initial_design_is_not_another_ones(
+    column: str, run_file: Path, sound: dict[str, Any], tmp_path: Path
+) -> None:
+    """Whatever its cells say now: asked for by them, its record was passed over and level 2's shown in its place."""
+    path = _copied(tmp_path, run_file.read_bytes())
+    connection = sqlite3.connect(path)
+    (stays,) = connection.execute("SELECT sql FROM sqlite_master WHERE name = 'evaluations_stay'").fetchone()
+    connection.execute("DROP TRIGGER evaluations_stay")
+    connection.execute(
+        f"UPDATE evaluations SET {column} = ? WHERE id = 1", ({"level": 3, "origin": "initiam"}[column],)
+    )
+    connection.execute(stays)
+    connection.commit()
+    connection.close()
+    found = everything(path)
+    assert isinstance(found["initial"], DamagedRunError)
+    assert outcome(sound, found) == "told"
+
+
 def damaged(content: bytes, dice: random.Random) -> bytes:
     """What disks, cables and editors do: cut, filled with zeros, swapped, doubled, strewn with noise."""
     kind = dice.choice(("cut", "zeros", "noise", "swap", "insert", "repeat", "text", "strewn"))
