@@ -13,6 +13,7 @@ import viser
 from websockets.sync.client import ClientConnection, connect
 
 from explorer.app import Explorer
+from tests.patience import patience
 
 
 def token_of_address(address: str) -> str:
@@ -40,8 +41,10 @@ def connect_as(
     query = token_of_address(explorer.address) if token is None else token
     headers = {} if cookie is None else {"Cookie": cookie}
     uri = f"ws://{host or f'127.0.0.1:{port}'}"
+    # a page that builds four others on a busy machine answers late; websockets itself gives up after 10 s
+    patient = patience(60.0)
     # whatever end of a tunnel the address names, the connection goes to the server
-    wire = socket.create_connection(("127.0.0.1", port), timeout=60)
+    wire = socket.create_connection(("127.0.0.1", port), timeout=patient)
     return connect(
         uri + (f"/?token={query}" if query else "/"),
         origin=origin,  # type: ignore[arg-type]
@@ -49,6 +52,7 @@ def connect_as(
         additional_headers=headers,
         compression=None,
         max_size=None,
+        open_timeout=patient,
         sock=wire,
     )
 
