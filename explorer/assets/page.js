@@ -263,8 +263,13 @@
     pressed = null;
   }, true);
   listen(document, "click", (event) => {
-    // detail 0: pressed with the keyboard or by a screen reader
-    if (event.detail === 0) act(buttonOf(event.target), event.shiftKey);
+    // detail 0: pressed with the keyboard or by a screen reader, which go on in what is drawn in the button's place
+    const button = event.detail === 0 && buttonOf(event.target);
+    if (!button) return;
+    act(button, event.shiftKey);
+    const { act: name, arg } = button.dataset;
+    if (name === "tour") stay(button, ".card.tour [data-next]");
+    else stay(button, '[data-act="' + name + '"]' + (arg === undefined ? "" : '[data-arg="' + CSS.escape(arg) + '"]'));
   }, true);
   listen(document, "wheel", (event) => {
     const svg = chartOf(event.target);
@@ -616,6 +621,9 @@
     }
     document.documentElement.style.setProperty("--hpsop-left", left + "px");
     document.documentElement.style.setProperty("--hpsop-right", innerWidth - right + "px");
+    // notices stand below the buttons, which they would keep from being pressed
+    const bar = frames.toolbar ? frames.toolbar.getBoundingClientRect().bottom : 0;
+    document.documentElement.style.setProperty("--hpsop-below", bar + 8 + "px");
   }
   // ---- a phone: the ship above, and below it one column with the chart first and the settings last ------------------
   const small = matchMedia("(max-width: 36em)");
@@ -628,7 +636,16 @@
     node.classList.add("hpsop-last");
     node.parentElement.classList.add("hpsop-column");
   }
-  const ticker = setInterval(() => { place(); outlined(); title(); names(); column(); thumbs(); }, 700);
+  // ---- viser's notice that there is no graphics card stays until it is closed: once read it goes by itself ------------
+  let noticed = 0;
+  function unnotice() {
+    const notice = Array.from(document.querySelectorAll(".mantine-Notification-root")).find((node) => node.textContent.startsWith("Software WebGL"));
+    if (!notice) return;
+    if (!noticed) noticed = performance.now();
+    const close = notice.querySelector("button");
+    if (close && performance.now() - noticed > 8000) close.click();
+  }
+  const ticker = setInterval(() => { place(); outlined(); title(); names(); column(); thumbs(); unnotice(); }, 700);
   disposers.push(() => clearInterval(ticker));
   let resizeTimer = null;
   listen(window, "resize", () => {

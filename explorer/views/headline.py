@@ -214,7 +214,7 @@ _WORDS = {
     "diameter_to_draft": "D/d",
     "cavitation": "blade area",
     "form": "form",
-    "propeller_clearance": "clear",
+    "propeller_clearance": "clearance",
     "back_cavitation": "cavitation",
     "tip_clearance": "tip",
     "length": "L",

@@ -101,7 +101,9 @@ def tour_card(index: int) -> Markup:
     """A step of the tour with its buttons."""
     step, last = TOUR[index], index == len(TOUR) - 1
     before = _button("tour", str(index - 1), "Back") if index else Markup("")
-    after = _button("tour", "end", "Done") if last else _button("tour", str(index + 1), "Next")
+    after = (
+        _button("tour", "end", "Done", " data-next") if last else _button("tour", str(index + 1), "Next", " data-next")
+    )
     leave = Markup("") if last else _button("tour", "end", "Leave the tour")
     return fill(
         '<div class="card tour" data-point="{}"><b>{}</b> <span class="soft">{} of {}</span><p>{}</p>'
@@ -117,8 +119,10 @@ def tour_card(index: int) -> Markup:
     )
 
 
-def _button(action: str, arg: str, word: str) -> Markup:
-    return fill('<button type="button" class="chip" data-act="{}" data-arg="{}">{}</button>', action, arg, word)
+def _button(action: str, arg: str, word: str, mark: str = "") -> Markup:
+    # who goes through the tour by the keyboard goes on with what is marked as next (assets/page.js)
+    button = '<button type="button" class="chip" data-act="{}" data-arg="{}"{}>{}</button>'
+    return fill(button, action, arg, Markup(mark), word)
 
 
 def help_card(case: Case) -> Markup:

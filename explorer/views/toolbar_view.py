@@ -143,7 +143,7 @@ class ToolbarView:
             on=options.picture_transparent,
             hint="nothing behind the ship: no sky",
         )
-        return joined([soft("Size", "span"), chips(sizes, boxes, clear)])
+        return joined([soft("Size", "span"), chips(sizes, fill('<span class="pair">{}</span>', boxes), clear)])
 
     def draw_card(self) -> None:
         """The design's name and headline numbers, and legends."""
@@ -152,13 +152,13 @@ class ToolbarView:
             self._card.show(overlay("card", Markup('<div class="card">Computing the initial design …</div>')))
             return
         evaluation = shown.evaluation
-        facts = NOTHING
+        numbers = facts = NOTHING
         if evaluation.ok:
             case = self._session.picture.case
             size = size_of_case(case)
+            numbers = headline_card(case, self._designs.initial(evaluation.level), shown)
             facts = fill(
-                "{}L<sub>PP</sub> {} · B {} · d {} · C<sub>B</sub> {:.3f} · ∇ {}<br>D {} · Z {} · f₁ {} · f₂ {}",
-                headline_card(case, self._designs.initial(evaluation.level), shown),
+                "L<sub>PP</sub> {} · B {} · d {} · C<sub>B</sub> {:.3f} · ∇ {}<br>D {} · Z {} · f₁ {} · f₂ {}",
                 *(quantity_of(evaluation, key, size) for key in ("length", "breadth", "hull_draft")),
                 evaluation.hull.block_coefficient,
                 *(quantity_of(evaluation, key, size) for key in ("displaced_volume", "propeller_diameter")),
@@ -174,9 +174,10 @@ class ToolbarView:
             overlay(
                 "card",
                 fill(
-                    '<div class="card" data-card="{}">{}<br><span class="soft">{}{}</span>{}</div>',
+                    '<div class="card" data-card="{}">{}<br>{}<span class="soft">{}{}</span>{}</div>',
                     shown.design_id if shown.design_id is not None else shown.kind,
                     headline(shown),
+                    numbers,
                     facts,
                     ghost,
                     legends,

@@ -407,6 +407,13 @@ def test_steps_are_taken_back_and_a_link_opens_the_same(page, session, explorer)
     wait_until(lambda: session.selected.kind == "whatif", 20, "the what-if again, by a key")
     assert draft.value("bounds", "length_to_breadth") == before
     wanted = session.selected.key
+    # by the keyboard: what was pressed keeps the focus though it is drawn anew, and takes the next key
+    turned = session.options.topsides
+    page.locator('[data-act="switch"][data-arg="topsides"]').focus()
+    for wanted_now in (not turned, turned):
+        page.wait_for_function("() => document.activeElement.dataset.arg === 'topsides'")
+        page.keyboard.press("Enter")
+        wait_until(lambda wanted_now=wanted_now: session.options.topsides == wanted_now, 20, "the topsides")
     press(page, "camera", "plan")
     press(page, "link")
     address = page.locator(".hpsop-link input").input_value()

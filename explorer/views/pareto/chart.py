@@ -119,8 +119,10 @@ class ParetoChart:
             words = fill('<p class="standing" data-infeasible="1">{}</p>', nothing) + words
             if not session.infeasible:
                 plot.message("No feasible design yet.\nPress infeasible to see the others.", numbers=True)
-        # both are minimised, and the axes do not say so
-        plot.text(self.limits[0][0], self.limits[1][0], "↙ better", "soft", dx=5, dy=-6)
+        # both are minimised, and the axes do not say so; below the corner, where no design lies
+        plot.raw(
+            fill('<text x="2" y="{:.1f}" class="note soft">↙ better</text>', plot.area.picture_height - 4), over=True
+        )
         self._hint(plot)
         stars = session.stars
 
@@ -152,7 +154,10 @@ class ParetoChart:
         )
 
     def _height(self) -> float:
-        return min(max(0.5 * self._session.size[1] - 178.0, 190.0), 400.0)
+        session = self._session
+        # what stands below it is seen without scrolling: a narrow panel breaks the legend and the line above in two
+        others = 240.0 if session.narrow and not session.phone else 178.0
+        return min(max(0.5 * session.size[1] - others, 166.0 if session.narrow else 190.0), 400.0)
 
     def _marks(self, picture: RunPicture) -> list[Mark]:
         """Designs of the run that is drawn: the next one may come on display meanwhile, and is then drawn anew."""
