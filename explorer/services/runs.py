@@ -183,6 +183,7 @@ class Runs:
             self._keeper = None
             self._designs.read_from(None)
             self._display.show_run(RunPicture("", self._display.drafted()), self._designs.first)
+        self._display.tell_all("library")
 
     def control(self, what: str) -> None:
         """pause, resume, stop or continue.

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import contextlib
 import itertools
 import json
 import math
@@ -16,6 +17,7 @@ from explorer.server.widgets import set_value
 from explorer.services.runs import Runs
 from explorer.state.app_state import AppState
 from explorer.state.draft import Draft, numbers_from_text
+from explorer.state.run_picture import ACTIVE
 from explorer.views.chips import NOTHING, box, chip, chips, soft
 from explorer.views.settings_fields import (
     CASE_FIELDS,
@@ -286,6 +288,13 @@ class SettingsView:
             return
         if name in SHIPPED_CASES:
             self._app.change_draft(lambda draft: draft.begin(load_case(name)), whole=True)
+            self._app.worker.every(self._show_set_up)
+
+    def _show_set_up(self) -> None:
+        """Another case was asked for: its initial design is shown, and a run of the one before waits in *Runs*."""
+        if self._app.picture.status not in ACTIVE:
+            with contextlib.suppress(InputError):
+                self._runs.close_run()
 
     def _on_workers(self, event: viser.GuiEvent[Any]) -> None:
         if event.client_id is None:
@@ -341,6 +350,8 @@ class SettingsView:
             )
             changed = joined([soft("Changed (●):"), chips(*words)])
         history = self._app.history
+        # a run on display keeps its own case
+        waiting = ", for the next run" if count and self._app.picture.name else ""
         # always there: what lies below must not move away from under the mouse
         steps = chips(
             chip(
@@ -350,7 +361,7 @@ class SettingsView:
                 hint="take the last change back (Ctrl+Z)",
             ),
             chip("redo", "↷ redo", disabled=not history.can_redo, hint="make it again (Ctrl+Shift+Z)"),
-            soft(f"{count} changed" if count else "as the preset", "span"),
+            soft((f"{count} changed" if count else "as the preset") + waiting, "span"),
         )
         self._about.show(box(fill("<p><b>{}</b></p>", draft.base.title), soft(lines), trouble, steps))
         self._changed.show(box(changed) if count else NOTHING)

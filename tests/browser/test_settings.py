@@ -247,8 +247,14 @@ def test_a_preset_is_chosen_and_its_two_lines_stand(page, explorer, draft):
     low, high = wanted.bounds.as_dict()["draft"]
     shown = page.locator('[data-variable="draft"] input')
     assert [float(box.input_value()) for box in shown.all()] == [low, high]
-    # the shown run's settings come back by its own button
+    # what is shown is the case that was asked for; the run waits in Runs, with its settings
+    wait_until(lambda: explorer.state.picture.name == "", 20, "the run to be put away")
+    assert explorer.state.picture.case == wanted
+    page.wait_for_selector('[data-selected="initial"]', state="attached")
     choose_tab(page, "Runs")
+    assert page.locator('[data-act="open"]:text-is("shown")').count() == 0
+    page.locator('[data-act="open"]:visible').first.click()
+    wait_until(lambda: explorer.state.picture.name != "", 20, "the run")
     press(page, "adopt")
     wait_until(lambda: draft.value("optimization", "seed") == 7, 20, "the settings of the shown run")
     assert draft.case() == explorer.state.picture.case
