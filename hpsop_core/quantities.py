@@ -24,6 +24,9 @@ __all__ = ["number_text"]
 CONSTRAINT_GROUP = "Constraints (feasible ≤ 0)"
 
 
+_CONDITION_GROUP = "Condition"
+
+
 @dataclass(frozen=True)
 class Quantity:
     """One number of a design.
@@ -74,6 +77,16 @@ class Quantity:
     def title(self) -> str:
         """Symbol and unit, for an axis."""
         return f"{self.symbol} [{self.unit or '–'}]"
+
+    @property
+    def condition(self) -> str:
+        """The operating condition it is of, in words ("20 kn"); "" for a number of the whole design."""
+        return self.group.partition(": ")[2] if self.group.startswith(_CONDITION_GROUP) else ""
+
+    @property
+    def place(self) -> str:
+        """The same after another word (" at 20 kn"), or ""."""
+        return f" at {self.condition}" if self.condition else ""
 
     def sized(self, size: Size) -> Quantity:
         """The same number in the unit and with the digits of a ship of this size."""
@@ -330,7 +343,7 @@ SHIP: tuple[Quantity, ...] = (
     ),
     Quantity(
         "carbon_dioxide_per_hour",
-        "CO2 over the profile",
+        "CO₂ over the profile",
         "ṁ_CO2",
         "t/h",
         3,
@@ -546,7 +559,7 @@ def condition_quantities(names: Sequence[str], size: Size = SHIP_SIZE) -> tuple[
                     unit,
                     decimals,
                     _condition(index, name, scale),
-                    f"Condition {index + 1}: {words}",
+                    f"{_CONDITION_GROUP} {index + 1}: {words}",
                     better,
                     formula,
                     scale,

@@ -42,7 +42,7 @@ def ramp(quantity: Quantity, limits: tuple[float, float]) -> Markup:
         '<div class="scale"><div class="scale-title">colour: {}</div><div class="ramp" '
         'style="background:linear-gradient(90deg, {})"></div><div class="scale-ticks"><span>{}</span><span>{}</span>'
         "</div></div>",
-        f"{quantity.label}{f' [{quantity.unit}]' if quantity.unit else ''}",
+        f"{quantity.label}{quantity.place}{f' [{quantity.unit}]' if quantity.unit else ''}",
         stops,
         number_text(limits[0], quantity.decimals),
         number_text(limits[1], quantity.decimals),

@@ -123,7 +123,13 @@ def designs_table(
         _head("id", "design", "number of the design in the run", "", options),
         _head("level", "lev.", "level", "", options),
         *(
-            _head(item.key, symbol_html(item.symbol), f"{item.label} ({item.key})", item.unit, options)
+            _head(
+                item.key,
+                symbol_html(item.symbol),
+                f"{item.label}{item.place} ({item.key})",
+                joined([word for word in (item.unit, item.condition) if word], "<br>"),
+                options,
+            )
             for item in columns
         ),
     ]
@@ -185,7 +191,7 @@ def _values(picture: RunPicture, key: str) -> NDArray[np.float64]:
     return np.full(len(picture.ids), np.nan) if values is None else values
 
 
-def _head(key: str, words: str | Markup, hint: str, unit: str, options: TableOptions) -> Markup:
+def _head(key: str, words: str | Markup, hint: str, unit: str | Markup, options: TableOptions) -> Markup:
     sorted_by = options.sort == key
     order = ("descending" if options.descending else "ascending") if sorted_by else "none"
     arrow = ("▼" if options.descending else "▲") if sorted_by else ""

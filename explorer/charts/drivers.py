@@ -22,7 +22,15 @@ def drivers_table(picture: RunPicture) -> Markup:
         return None if values is None else values[keep]
 
     found = rank_correlations(picture.case, column)
-    heads = joined(fill('<th title="{}">{}</th>', item.label, symbol_html(item.symbol)) for item in found.results)
+    heads = joined(
+        fill(
+            '<th title="{}">{}{}</th>',
+            item.label + item.place,
+            symbol_html(item.symbol),
+            fill('<br><span class="unit">{}</span>', item.condition) if item.condition else "",
+        )
+        for item in found.results
+    )
     rows = [fill("<tr><th>variable</th>{}</tr>", heads)]
     for name, *cells in correlation_rows(found, _named):
         row = '<tr><td class="name">{}</td>{}</tr>'

@@ -125,9 +125,9 @@ def parallel_chart(
         low, high = limits[index]
         title_y = 11 if index % 2 == 0 else 25
         parts.append(fill('<path d="M{:.1f} {:.1f}V{:.1f}" class="axis"/>', x, top, top + plot_height))
-        hint = f"{quantity.label}; drag the name sideways to move its axis, or use ← → on it"
+        hint = f"{quantity.label}{quantity.place}; drag the name sideways to move its axis, or use ← → on it"
         title = fill("<title>{}</title>{}", hint, symbol_svg(_axis_title(quantity)))
-        parts.append(fill(_NAME, x, title_y, quantity.key, f"axis of {quantity.label}", title))
+        parts.append(fill(_NAME, x, title_y, quantity.key, f"axis of {quantity.label}{quantity.place}", title))
         for value, y in ((high, top - 4), (low, top + plot_height + 12)):
             parts.append(fill(_TEXT, x, y, "note", number_text(value, min(quantity.decimals, 3))))
         if quantity.key in filters:

@@ -83,7 +83,8 @@ def scatter_chart(
     """
     wanted = chosen(picture, options)
     plot = Plot(
-        sheet.width, sheet.height, Axis(wanted.x.title(), limits[0]), Axis(wanted.y.title(), limits[1], 5),
+        sheet.width, sheet.height, Axis(wanted.x.title() + wanted.x.place, limits[0]),
+        Axis(wanted.y.title() + wanted.y.place, limits[1], 5),
         margins=(52, 14, 8, 36), style=sheet.style,
     )  # fmt: skip
     x, y = _values(picture, wanted.x), _values(picture, wanted.y)
@@ -105,8 +106,9 @@ def scatter_chart(
         plot.mark(float(x[row]), float(y[row]), "circle", 3.6, f"level{picture.level[row]} open")
     if front.size and newest is not None:
         plot.keys.append(Key("ring", f"level{newest.level} open", f"front of level {newest.level}"))
-    draw_marks(plot, marks)
-    if not rows.size:
+    if rows.size:
+        draw_marks(plot, marks)
+    else:
         plot.message(
             "No feasible design yet.\nPress infeasible above to see the others."
             if len(picture.ids)
@@ -126,7 +128,7 @@ def scatter_words(picture: RunPicture, options: ChartOptions, rows: NDArray[np.i
         parts.append(
             fill(
                 '<p class="soft">size: {} from {} to {} {}</p>',
-                wanted.size.label,
+                wanted.size.label + wanted.size.place,
                 number_text(low, wanted.size.decimals),
                 number_text(high, wanted.size.decimals),
                 wanted.size.unit,

@@ -5,6 +5,8 @@ from __future__ import annotations
 from collections.abc import Mapping, Sequence
 
 from explorer.state.shown import Shown
+from hpsop_core.case.case import KNOT
+from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import Markup, fill, joined, symbol_html, symbol_plain
 from hpsop_core.quantities import (
     CONSTRAINT_GROUP,
@@ -52,10 +54,17 @@ def warnings_html(shown: Shown) -> Markup:
         lines.append(
             fill('<p class="standing" data-standing="{}">Stands on: {}.</p>', len(standing), "; ".join(standing))
         )
-    # warnings are plain text of files and terminals
-    plain = (text.replace("2 pi Fn^2 L", "2π Fn² L") for text in shown.evaluation.warnings)
+    # warnings are plain text of files and terminals, which name a condition by its Froude number
+    plain = (_by_speed(text, shown.evaluation).replace("2 pi Fn^2 L", "2π Fn² L") for text in shown.evaluation.warnings)
     lines += [fill('<p class="soft">{}</p>', text) for text in plain]
     return joined(lines)
+
+
+def _by_speed(text: str, evaluation: Evaluation) -> str:
+    for condition in evaluation.conditions:
+        number = condition.froude_number
+        text = text.replace(f"Froude number {number:g}:", f"{condition.speed / KNOT:.4g} kn (Fn {number:.4g}):")
+    return text
 
 
 def comparison_table(initial: Shown | None, selected: Shown | None, quantities: Sequence[Quantity]) -> Markup:

@@ -125,6 +125,9 @@ def test_a_page_is_bounded_however_many_designs_there_are():
     # some kilobytes: it is sent with every generation of a run
     assert len(full) < 40_000
     assert page_of(rows[:0], options) == 0
+    # a heading says of which speed its number is
+    usual = designs_table(large, TableOptions(which="all"), rows, None, NONE)
+    assert re.search(r">P<sub>D1</sub>.*?<br><span class=\"unit\">MW<br>[\d.]+ kn</span></th>", usual)
 
 
 def test_the_csv_holds_every_row_and_the_columns_shown():

@@ -12,12 +12,13 @@ from explorer.services.answers import Answers
 from explorer.state.run_picture import GenerationPicture, RunPicture
 from explorer.state.shown import Shown
 from explorer.views.headline import headline_card, traffic_lights
+from explorer.views.tables import warnings_html
 from hpsop_core.case.case import KNOT, Case
 from hpsop_core.charts.looks import Look, Sheet
 from hpsop_core.charts.propulsion import resistance_chart
 from hpsop_core.evaluation.coverage import KEPT, LIMIT, UNCOVERED, VIOLATED, standings
 from hpsop_core.evaluation.result import Evaluation
-from hpsop_core.quantities import conditions_of
+from hpsop_core.quantities import conditions_of, quantities_of_case
 from tests.two_speeds import stated_case
 
 
@@ -151,6 +152,21 @@ def test_the_states_agree_with_the_constraints_of_the_evaluation(case: Case, lon
             assert (item.state == VIOLATED) == item.constraint.is_violated(value)
     assert {item.state for item in found} <= {KEPT, LIMIT, VIOLATED, UNCOVERED}
     assert longer.feasible == all(item.state != VIOLATED for item in found)
+
+
+def test_a_warning_names_its_condition_by_the_speed(longer: Evaluation):
+    condition = longer.conditions[0]
+    said = f"Froude number {condition.froude_number:g}: 7.7 cells on a transverse wave of 2 pi Fn^2 L = 0.193 L"
+    told = warnings_html(Shown("Design 7", dataclasses.replace(longer, warnings=(said,)), 7))
+    assert f"{condition.speed / KNOT:.4g} kn (Fn {condition.froude_number:.4g}): 7.7 cells" in told
+    assert "Froude number" not in told
+
+
+def test_a_number_of_a_condition_says_of_which(case: Case):
+    by_key = {item.key: item for item in quantities_of_case(case)}
+    for number, speed in enumerate(case.speeds, start=1):
+        assert by_key[f"delivered_power_{number}"].place == f" at {speed / KNOT:.4g} kn"
+    assert by_key["length"].place == by_key["f1"].place == ""
 
 
 def test_the_headline_says_before_and_after_with_the_error(case: Case, answers: Answers, longer: Evaluation):

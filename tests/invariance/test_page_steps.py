@@ -32,6 +32,7 @@ from explorer.state.view_options import ViewOptions
 from explorer.views.on_display import follow_best
 from hpsop_core.case.case import Case, load_case
 from hpsop_core.charts.looks import Sheet
+from hpsop_core.charts.search import Mark
 from hpsop_core.errors import InputError
 from hpsop_core.evaluation.evaluate import evaluate
 from tests.two_speeds import TWO_SPEEDS
@@ -237,6 +238,10 @@ def test_the_scatter_chart_draws_and_picks_what_was_chosen(picture: RunPicture):
     size = (plot.area.width, plot.area.height)
     assert pick_scatter(picture, options, rows, (350.0, 1.0), limits, size) == [3]
     assert pick_scatter(picture, options, rows, (340.0, 0.95), limits, size) == []
+    # the initial design's mark has no place among no designs
+    mark = Mark(1.0, 1.0, "square", 4.0, "initial", "initial design")
+    empty = scatter_chart(picture, options, rows[:0], {}, ((0.0, 1.0), (0.0, 1.0)), [mark], Sheet(400.0, 300.0))
+    assert "initial" not in empty.svg("scatter")
     # a quantity of another run makes room
     assert "f₁" in scatter_chart(
         picture, ChartOptions(x="gone"), rows, {}, scatter_limits(picture, ChartOptions(x="gone"), rows), [],
