@@ -50,7 +50,7 @@ class Key:
         shape: of a mark; "line" is a stroke, "band" a filled box, "dots" a point of a cloud.
         css: classes.
         words: what it stands for; an underscore makes a subscript.
-        style: as the line's own.
+        style: as the line's or band's own.
     """
 
     shape: str
@@ -68,11 +68,11 @@ def grid(area: Area, x: Axis, y: Axis, numbers: bool) -> Markup:
     return fill('<path d="{}" class="grid"/>', path)
 
 
-def axes(area: Area, x: Axis, y: Axis, second: Axis | None, numbers: bool, style: Style) -> Markup:
+def axes(area: Area, x: Axis, y: Axis, second: Axis | None, numbers: bool, style: Style, framed: bool = True) -> Markup:
     """Axis lines, ticks' labels, titles."""
     drop, rise = 1.27 * style.letters, 0.36 * style.letters
     path = f"M{area.left:g} {area.top:g}V{area.bottom:g}H{area.right:g}" + (f"V{area.top:g}" if second else "")
-    parts = [fill('<path d="{}" class="axis"/>', path)]
+    parts = [fill('<path d="{}" class="axis"/>', path)] if framed else []
     for value, text in x.ticks() if numbers else ():
         a = area.left + float(x.share(value)) * area.width
         # a label at the very end must not run out of the picture
@@ -119,7 +119,8 @@ def legend(keys: Sequence[Key], top: float, left: float, width: float, style: St
         if key.shape == "line":
             mark = fill('<path d="M{:.1f} {:.1f}h18" class="key-line {}" style="{}"/>', a, y, key.css, key.style)
         elif key.shape == "band":
-            mark = fill('<path d="M{:.1f} {:.1f}h18v8h-18z" class="key-band {}"/>', a, y - 4, key.css)
+            box = '<path d="M{:.1f} {:.1f}h18v8h-18z" class="key-band {}" style="{}"/>'
+            mark = fill(box, a, y - 4, key.css, key.style)
         elif key.shape == "dots":
             mark = fill('<path d="M{:.1f} {:.1f}h0" class="key-dots {}" style="stroke-width:6"/>', a + 6, y, key.css)
         else:

@@ -81,7 +81,7 @@ class Plot:
         self.keys: list[Key] = []
         self._elements: list[Markup] = []
         self._over: list[Markup] = []
-        self._numbers = True
+        self._numbers = self._framed = True
 
     def copy(self) -> Plot:
         """The same plot, to draw further on without changing this one."""
@@ -300,8 +300,8 @@ class Plot:
         self._over.append(frame.message(self.area, text))
 
     def without_numbers(self) -> None:
-        """Axes without ticks: a drawing whose places say themselves what they are."""
-        self._numbers = False
+        """No axes, ticks and grid: a drawing whose places say themselves what they are."""
+        self._numbers = self._framed = False
 
     # ---- out ---------------------------------------------------------------------------------------------------------
     def svg(self, name: str, attributes: str = "", readable: bool = False) -> Markup:
@@ -334,7 +334,7 @@ class Plot:
             x=area.left, y=area.top, w=area.width, h=area.height,
             grid=frame.grid(area, self.x, self.y, self._numbers),
             elements=joined(self._elements),
-            axes=frame.axes(area, self.x, self.y, self.second, self._numbers, self.style),
+            axes=frame.axes(area, self.x, self.y, self.second, self._numbers, self.style, self._framed),
             over=joined(self._over),
             keys=keys,
         )  # fmt: skip

@@ -62,7 +62,7 @@ def power_chart(
             if main:
                 # as smooth as the lines that bound it
                 fine, low = smooth(knots, scale * curves.calm)
-                plot.band(fine, low, (1.0 + sea_margin) * low, look.role)
+                plot.band(fine, low, (1.0 + sea_margin) * low, look.role, key="its sea margin")
         for number, (condition, power) in enumerate(_known(evaluation)):
             at = condition.speed / KNOT
             title = (
@@ -95,7 +95,7 @@ def _profile(plot: Plot, look: Look, evaluation: Evaluation, top: float) -> None
         height = _PROFILE * top * share / greatest
         plot.rectangle(at - half, at + half, 0.0, height, f"band {look.role}", "fill-opacity:.35")
         plot.text(at, height, f"{100.0 * share:.3g} %", "soft", "middle", dy=-3)
-    plot.keys.append(Key("band", look.role, "share of time"))
+    plot.keys.append(Key("band", look.role, "share of time", "fill-opacity:.35"))
 
 
 def _gain(plot: Plot, look: Look, speed: float, power: float, first: Evaluation, number: int, scale: float) -> None:

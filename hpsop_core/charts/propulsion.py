@@ -23,6 +23,8 @@ _EMPTY_RANGE = (0.16, 0.3)
 _FEW_CONDITIONS = 3
 _HIGHEST = 1.4
 _FEW = 2
+# px: closer together two names at the foot of their lines would lie on each other
+_NAME_WIDTH = 24.0
 _SUBSCRIPTS = str.maketrans("0123456789", "₀₁₂₃₄₅₆₇₈₉")
 Curves = tuple[Array, Array, Array, Array]
 WAITING = "computing …"
@@ -80,11 +82,26 @@ def _conditions(plot: Plot, look: Look, evaluation: Evaluation, j: Array, main: 
         plot.mark(at, thrust, "circle", 3.6, look.role, title=f"{label}, KT {thrust:.4f}", name=f"KT, {series}")
         plot.mark(at, efficiency, "circle", 3.0, look.role, title=f"{label}, η₀ {efficiency:.4f}", name=f"η₀, {series}")
         if main:
-            # two conditions may nearly coincide: their names then stand on either side
-            right = all(at >= other for other in places)
-            plot.text(at, 0.0, f"J_{number}", "soft", "start" if right else "end", dx=3 if right else -3, dy=-5)
             a, b, ground = (float(v) for v in (plot.px(at), plot.py(efficiency), plot.py(0.0)))
             plot.raw(fill('<path d="M{:.1f} {:.1f}V{:.1f}" class="guide"/>', a, b, ground))
+    if main:
+        _name_conditions(plot, places)
+
+
+def _name_conditions(plot: Plot, places: Sequence[float]) -> None:
+    """The conditions' names at their advance coefficients: where lines nearly coincide, one name for all of them."""
+    numbered = sorted((at, number) for number, at in enumerate(places, start=1) if at > 0.0)
+    groups: list[list[tuple[float, int]]] = []
+    for at, number in numbered:
+        if not groups or float(plot.px(at)) - float(plot.px(groups[-1][-1][0])) > _NAME_WIDTH:
+            groups.append([])
+        groups[-1].append((at, number))
+    for group in groups:
+        names = ", ".join(f"J_{number}" for number in sorted(number for _, number in group))
+        # right of its line stands the last, where no other follows
+        right = group is groups[-1]
+        at = group[-1 if right else 0][0]
+        plot.text(at, 0.0, names, "soft", "start" if right else "end", dx=3 if right else -3, dy=-5)
 
 
 def _name_curves(plot: Plot, drawn: Sequence[Curves]) -> None:

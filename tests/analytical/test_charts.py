@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 import csv
+import dataclasses
 import io
+import itertools
 import re
 import xml.etree.ElementTree as ElementTree
 
@@ -248,6 +250,27 @@ def test_operating_points_lie_on_the_curves_and_on_the_required_thrust(initial: 
         if word == "KT":
             needed = path_of(svg, f"required KT, condition {'₁₂'.index(which) + 1}, initial")
             assert abs(np.interp(x, *needed) - y) < 1.0
+
+
+def test_the_names_of_conditions_never_lie_on_each_other(initial: Evaluation):
+    sheet = Sheet(480.0, 300.0)
+    first = initial.conditions[0]
+    for apart in (0.0, 0.004, 0.02, 0.1):
+        places = (0.6 + apart * number for number in (0, 2, 1, 3))
+        shown = dataclasses.replace(
+            initial, conditions=tuple(dataclasses.replace(first, advance_coefficient=place) for place in places)
+        )
+        svg = open_water_chart([(Look("initial", "initial", "dash"), shown)], sheet).svg("open_water")
+        names = re.findall(
+            r'<text x="([\d.]+)" y="[\d.]+" text-anchor="(start|end)" class="note soft">(J.*?)</text>', svg
+        )
+        # about 6 px a letter; the subscript's marks are no letters
+        spans = sorted(
+            (x, x + wide) if anchor == "start" else (x - wide, x)
+            for x, anchor, wide in ((float(a), b, 6.0 * len(re.sub("<[^>]*>", "", text))) for a, b, text in names)
+        )
+        assert all(left[1] <= right[0] for left, right in itertools.pairwise(spans)), (apart, names)
+        assert re.sub("<[^>]*>", "", "".join(text for _, _, text in names)).count("J") == 4
 
 
 def test_the_pareto_chart_holds_clouds_front_and_marks():

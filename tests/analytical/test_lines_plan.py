@@ -62,6 +62,7 @@ def test_the_chart_is_drawn_at_one_scale_with_every_line(hull: Hull, lines: tupl
     half = next(series for series in named if series.name.startswith("design waterline"))
     assert half.y.max() < 0.0 and half.x.max() <= profile.x.max() + 1e-6
     svg = str(plot.svg("plan"))
+    assert 'class="axis"' not in svg, "a drawing of its own measure has no axes"
     for word in (">AP 0<", ">10 FP<", ">BL<", ">5<"):
         assert word in svg
     assert all(svg.count(f">{number}<") >= 2 for number in range(1, 10)), "a station's number in body and sheer plan"

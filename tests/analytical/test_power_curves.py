@@ -124,6 +124,10 @@ def test_the_chart_tells_powers_profile_and_gain(designs: list[tuple[Look, Power
             assert float(row[2]) == pytest.approx(1e-6 * condition.brake_power, rel=1e-8)
     assert {row[2] for row in rows if row[0] == "rating"} == {f"{1e-6 * rating:.9g}"}
     svg = str(plot.svg("power"))
+    # two shades that stand for two things have each their own words and strength
+    keys = {key.words: key.style for key in plot.keys if key.shape == "band"}
+    assert keys == {"share of time": "fill-opacity:.35", "its sea margin": ""}
+    assert 'class="key-band selected" style="fill-opacity:.35"' in svg
     weights = [condition.weight for condition in designs[1][2].conditions]
     for weight in weights:
         assert f"{100.0 * weight / sum(weights):.3g} %<" in svg
