@@ -404,6 +404,8 @@ class RunDriver:
                     self._tell(
                         "state", reason=f"level 1 learns from {constants.wave_calibration_hulls} hulls of level 2"
                     )
+                elif level != FAST.number:
+                    self._tell("state", reason=f"solving the initial design at level {level}")
                 text = self._computed_reference(level)
                 self._tell("state", reason="")
                 stored = text
