@@ -397,6 +397,12 @@
     tip.style.top = Math.max(4, Math.min(y - h / 2, innerHeight - h - 4)) + "px";
   };
 
+  // ---- who closes what a button opened goes on at that button, also by the keyboard ---------------------------------
+  function backTo(action) {
+    const opener = document.querySelector('[data-act="' + action + '"]');
+    if (opener) opener.focus();
+  }
+
   // ---- a link to what this page shows ------------------------------------------------------------------------------
   const linked = document.createElement("div");
   linked.className = "hpsop-link card";
@@ -421,7 +427,7 @@
     // pages that come without encryption from another machine have no clipboard of the new kind
     if (navigator.clipboard) navigator.clipboard.writeText(address).then(() => { linked.dataset.copied = "1"; }, () => {});
     else try { if (document.execCommand("copy")) linked.dataset.copied = "1"; } catch (e) { /* it stands there to be copied */ }
-    const shut = () => { linked.style.display = "none"; };
+    const shut = () => { linked.style.display = "none"; backTo("link"); };
     linked.querySelector("button").onclick = shut;
     linked.onkeydown = (event) => { if (event.key === "Escape") shut(); };
   };
@@ -572,12 +578,14 @@
       document.body.appendChild(frames[name]);
       disposers.push(() => frames[name].remove());
     }
+    const within = frames[name].contains(document.activeElement);
     frames[name].innerHTML = source.innerHTML;
     frames[name].style.display = source.innerHTML.trim() ? "block" : "none";
     place();
     if (name === "tour") outlined();
     // who opened the help with the keyboard goes on in it
     if (name === "help" && source.innerHTML.trim()) frames[name].querySelector("[tabindex]").focus();
+    else if (name === "help" && within) backTo("help");
   };
   // ---- what a step of the tour points at: an outline around it, of a selector or of the tabs with "tab:Design" among them
   const outline = document.createElement("div");

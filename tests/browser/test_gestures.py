@@ -418,6 +418,7 @@ def test_steps_are_taken_back_and_a_link_opens_the_same(page, session, explorer)
     press(page, "link")
     address = page.locator(".hpsop-link input").input_value()
     page.keyboard.press("Escape")
+    assert page.evaluate("document.activeElement.dataset.act") == "link"
     assert "token" not in address and address.startswith(explorer.address.partition("?")[0])
     other = page.context.new_page()
     other.goto(address)

@@ -119,14 +119,18 @@ def test_the_tour_is_offered_once_and_the_help_tells_what_labels_mean(explorer, 
     page = open_page(explorer, 1366, 600, toured=False)
     tour = page.locator(".hpsop-overlay-tour [data-point]")
     tour.wait_for()
-    press(page, "tour", "1")
+    # by the keyboard: the next step's button has the focus
+    page.locator(".card.tour [data-next]").focus()
+    page.keyboard.press("Enter")
     page.locator('.hpsop-overlay-tour [data-point="svg[data-chart=pareto]"]').wait_for()
+    page.wait_for_function("() => 'next' in document.activeElement.dataset")
     press(page, "tour", "end")
     tour.wait_for(state="detached")
     press(page, "help")
     page.locator('.hpsop-overlay-help [data-word="open_water_efficiency"]').wait_for()
     page.keyboard.press("Escape")
     page.locator(".hpsop-overlay-help [data-word]").first.wait_for(state="detached")
+    page.wait_for_function("() => document.activeElement.dataset.act === 'help'")
     label = page.locator("label[for]", has_text="L/B").first
     label.dispatch_event("pointerover")
     assert label.get_attribute("title") == "length over breadth, L/B"
