@@ -252,8 +252,9 @@ def test_a_preset_is_chosen_and_its_two_lines_stand(page, explorer, draft):
     assert explorer.state.picture.case == wanted
     page.wait_for_selector('[data-selected="initial"]', state="attached")
     choose_tab(page, "Runs")
-    assert page.locator('[data-act="open"]:text-is("shown")').count() == 0
-    page.locator('[data-act="open"]:visible').first.click()
+    page.wait_for_selector('[data-act="open_run"]:text-is("open")')
+    assert page.locator('[data-act="open_run"]:text-is("shown")').count() == 0
+    press(page, "open_run")
     wait_until(lambda: explorer.state.picture.name != "", 20, "the run")
     press(page, "adopt")
     wait_until(lambda: draft.value("optimization", "seed") == 7, 20, "the settings of the shown run")

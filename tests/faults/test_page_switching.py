@@ -23,7 +23,9 @@ from explorer.state.hub import Hub
 from explorer.state.run_picture import RunPicture
 from explorer.state.session import Session
 from explorer.views.on_display import select_design
+from explorer.views.settings_view import SettingsView
 from explorer.views.table_view import TableView
+from hpsop_core.case.case import load_case
 from hpsop_core.runs.controller import optimize
 
 
@@ -138,6 +140,21 @@ def test_the_same_file_opened_again_keeps_what_is_selected(page: Page, finished:
     selected = page.session.selected
     page.runs.open(finished[0])
     assert page.session.selected is selected
+
+
+def test_another_case_is_shown_at_once_and_a_run_that_rests_waits(page: Page, finished: tuple[Path, Path]) -> None:
+    page.runs.open(finished[0])
+    # its widgets belong to a server, and choosing touches none of them
+    view = object.__new__(SettingsView)
+    view._app, view._runs = page.state, page.runs
+    wanted = load_case("dtc-p4119-paper")
+    view._on_preset(MagicMock(client_id=1, target=MagicMock(value=wanted.name)))
+    wait_until(lambda: page.state.picture.name == "")
+    assert page.state.picture.case == wanted
+    wait_until(lambda: page.session.selected is not None)
+    selected = page.session.selected
+    assert selected is not None and selected.kind == "initial"
+    assert selected.evaluation.conditions[0].speed == pytest.approx(wanted.speeds[0])
 
 
 def test_a_table_is_drawn_of_one_picture(
