@@ -406,8 +406,11 @@ class RunDriver:
                     )
                 elif level != FAST.number:
                     self._tell("state", reason=f"solving the initial design at level {level}")
-                text = self._computed_reference(level)
-                self._tell("state", reason="")
+                try:
+                    text = self._computed_reference(level)
+                finally:
+                    # also where it cannot be computed and the run goes on without it
+                    self._tell("state", reason="")
                 stored = text
                 self._keep(lambda: self._store.record_reference(level, stored))
             # Also a fresh one goes through its text: a resumed run has nothing else.
