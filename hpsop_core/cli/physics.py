@@ -106,6 +106,8 @@ def _evaluate(arguments: argparse.Namespace) -> int:
 
         result = with_stated_errors(case, evaluate(case, variables, arguments.level))
     _tell_own_hull(case)
+    if case.propeller.geometry:
+        _tell_own_propeller(case.propeller.geometry, case.propeller.geometry_blade_count)
     if arguments.json:
         print_json(result.as_dict())
     else:
@@ -119,6 +121,13 @@ def _tell_own_hull(case: Case) -> None:
 
     if case.hull.own_file:
         print(own_hull(case.hull).understood, file=sys.stderr)
+
+
+def _tell_own_propeller(file: str, blade_count: int) -> None:
+    """What was understood of a radial table, on standard error: what was assumed of it, and what is doubted."""
+    from hpsop_core.geometry.propeller.input import read_propeller
+
+    print(read_propeller(file, blade_count), file=sys.stderr)
 
 
 def print_evaluation(result: Evaluation) -> None:
@@ -319,10 +328,12 @@ def _resistance(arguments: argparse.Namespace) -> int:
 
 def _open_water(arguments: argparse.Namespace) -> int:
     from hpsop_core import load_propeller, open_water
+    from hpsop_core.case.case import Case
     from hpsop_core.evaluation import open_water as test
     from hpsop_core.geometry.from_files import FEWEST_BLADES, MOST_BLADES
 
     advance = number_list(arguments.advance, test.ADVANCE_RULE, "--advance")
+    blades: float | None = None
     diameter = checked_option(arguments.diameter, test.DIAMETER_RULE, "--diameter")
     rate = checked_option(arguments.rotation_rate, test.ROTATION_RATE_RULE, "--rotation-rate")
     viscosity = checked_option(arguments.viscosity, test.VISCOSITY_RULE, "--viscosity")
@@ -346,6 +357,10 @@ def _open_water(arguments: argparse.Namespace) -> int:
         rotation_rate=MODEL_ROTATION_RATE if rate is None else rate,
         viscosity=MODEL_VISCOSITY if viscosity is None else viscosity, inviscid=arguments.inviscid,
     )  # fmt: skip
+    if arguments.geometry is not None:
+        _tell_own_propeller(arguments.geometry, int(blades or 0))
+    elif isinstance(subject, Case) and subject.propeller.geometry:
+        _tell_own_propeller(subject.propeller.geometry, subject.propeller.geometry_blade_count)
     if arguments.json:
         print_json(result.as_dict())
         return 0

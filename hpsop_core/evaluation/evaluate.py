@@ -19,6 +19,7 @@ from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation.curves import open_water_curve
 from hpsop_core.evaluation.levels import level_of
 from hpsop_core.evaluation.physics import Physics, compute
+from hpsop_core.evaluation.propeller_answer import propeller_warnings
 from hpsop_core.evaluation.reference import Reference, reference_for
 from hpsop_core.evaluation.result import Evaluation, Failed, Ok
 from hpsop_core.evaluation.ship import profile_eedi, ship_warnings
@@ -99,7 +100,12 @@ def assessed(
         all_objectives=known,
         constraints=kept,
         feasible=not violated,
-        warnings=(*physics.warnings, *_warnings(design, "form" in violated), *ship_warnings(case, design)),
+        warnings=(
+            *physics.warnings,
+            *propeller_warnings(case.propeller),
+            *_warnings(design, "form" in violated),
+            *ship_warnings(case, design),
+        ),
         open_water=open_water_curve(physics.curve),
         active_bounds=case.bounds.active(design.variables),
         fuel_per_hour=fuel,

@@ -14,7 +14,7 @@ from hpsop_core.case.sections import ConstantsSection, PropellerSection
 from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation.levels import TRUTH, level_of
-from hpsop_core.geometry.propeller.input import radial_table_from_csv
+from hpsop_core.geometry.propeller.input import UnderstoodPropeller, read_propeller
 from hpsop_core.geometry.propeller.propeller import Propeller, RadialTable, load_propeller, propeller_family
 from hpsop_core.hydro.open_water import OpenWater, SectionDrag
 from hpsop_core.hydro.operating_point import PropellerCurve, chebyshev_nodes
@@ -53,9 +53,17 @@ def parent_table(section: PropellerSection) -> RadialTable:
     Raises:
         InputError: a file that cannot be used.
     """
-    if section.geometry:
-        return radial_table_from_csv(Path(section.geometry), section.geometry_blade_count)
-    return load_propeller(section.parent)
+    return _own_table(section).table if section.geometry else load_propeller(section.parent)
+
+
+def propeller_warnings(section: PropellerSection) -> tuple[str, ...]:
+    """What is doubted of the radial table that a case names: nothing of a shipped one."""
+    return _own_table(section).warnings if section.geometry else ()
+
+
+@lru_cache(maxsize=8)
+def _own_table(section: PropellerSection) -> UnderstoodPropeller:
+    return read_propeller(Path(section.geometry), section.geometry_blade_count)
 
 
 @lru_cache(maxsize=512)

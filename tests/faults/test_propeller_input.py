@@ -8,9 +8,11 @@ from pathlib import Path
 import numpy as np
 import pytest
 
+from hpsop_core import load_case
 from hpsop_core.assets import read_asset_text
 from hpsop_core.cli.main import main
 from hpsop_core.errors import InputError
+from hpsop_core.evaluation.propeller_answer import propeller_warnings
 from hpsop_core.geometry.propeller.input import read_propeller
 from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family, radial_table_from_csv
 from hpsop_core.geometry.propeller.radial_table import RadialTable
@@ -228,3 +230,50 @@ def test_a_blade_of_a_duct_and_skew_in_radians_are_doubted(tmp_path: Path) -> No
     assert radians.tip_skew_degrees == pytest.approx(np.degrees(0.5))
     assert radians.warnings == ()
     assert read_propeller(write(tmp_path, [HEADER, *skewed]), 4).warnings == ()
+
+
+@pytest.mark.parametrize("tip", ["1.0,0,1.075,0,0,,", "1.0,0,,,,-,0.016", "1.0,0,1.075,0,0,0,0.016"])
+def test_a_tip_without_chord_needs_no_thickness(tip: str, tmp_path: Path) -> None:
+    """Thickness over a chord of nothing is blank or 0 in published tables; elsewhere a blank is told as one."""
+    told = read_propeller(write(tmp_path, [HEADER, *ROWS[:-1], tip]), 4)
+    assert told.table.thickness_ratio[-1] == 0.032 and told.table.camber_ratio[-1] == 0.016
+    assert any(line.startswith("at the tip, which has no chord, as in the row before: ") for line in told.assumed)
+    assert told.expanded_area_ratio == read_propeller(write(tmp_path, [HEADER, *ROWS]), 4).expanded_area_ratio
+    for row, words in (("1.0,0.1,1.075,0,0,,0.016", "t_c is blank"), ("1.0,0.1,1.075,0,0,0,0.016", "at least 0.001")):
+        with pytest.raises(InputError, match=words):
+            read_propeller(write(tmp_path, [HEADER, *ROWS[:-1], row]), 4)
+
+
+def test_rows_from_the_tip_to_the_hub_are_the_same_blade(tmp_path: Path) -> None:
+    base = radial_table_from_csv(write(tmp_path, [HEADER, *ROWS]))
+    told = read_propeller(write(tmp_path, [HEADER, *ROWS[::-1]]), 3)
+    assert "rows from the tip to the hub turned round" in told.assumed
+    assert np.array_equal(told.table.chord_ratio, base.chord_ratio)
+    assert np.array_equal(told.table.thickness_ratio, base.thickness_ratio)
+
+
+def test_the_hand_of_a_propeller(tmp_path: Path) -> None:
+    """Minus signs of a left-handed table: of the pitch refused with what to write, of the skew doubted."""
+    left = [",".join([*cells[:2], f"-{cells[2]}", *cells[3:]]) for cells in (line.split(",") for line in ROWS)]
+    with pytest.raises(InputError, match="right-handed mirror image: pitch without the minus"):
+        read_propeller(write(tmp_path, [HEADER, *left]), 3)
+    for sign, doubted in ((1, False), (-1, True)):
+        skewed = [
+            ",".join([*cells[:3], str(sign * 8 * k), *cells[4:]])
+            for k, cells in enumerate(line.split(",") for line in ROWS)
+        ]
+        told = read_propeller(write(tmp_path, [HEADER, *skewed]), 3)
+        assert any("40 degrees ahead of the hub section" in line for line in told.warnings) == doubted
+
+
+def test_what_is_doubted_of_a_blade_is_told_where_it_is_computed(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Before, ``hpsop propeller`` alone said that a blade is a duct's or its skew forward."""
+    broad = write(tmp_path, [HEADER, *ROWS[:-1], "1.0,0.45,1.075,0,0,0.032,0.012"])
+    assert main(["open-water", "--geometry", str(broad), "--blades", "3", "--advance", "0.8", "--json"]) == 0
+    printed = capsys.readouterr()
+    assert json.loads(printed.out)["points"] and "ducts are not computed" in printed.err
+    case = load_case("dtc-p4119-power").replaced("propeller", geometry=str(broad), geometry_blade_count=3)
+    assert any("ducts are not computed" in line for line in propeller_warnings(case.propeller))
+    assert propeller_warnings(load_case("dtc-p4119-power").propeller) == ()

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import itertools
 import math
 from collections.abc import Sequence
 from dataclasses import dataclass
@@ -44,6 +45,13 @@ _TO_RATIO = {
     THICKNESS_TO_DIAMETER: "divide the thickness by the diameter and call the column t_D",
 }
 _OPTIONAL = {"skew_deg": "skew", "rake_D": "rake"}
+# What a tip without chord may leave blank: of a point they say nothing, and its row goes on as the one before.
+_NOTHING_AT_A_POINT = ("P_D", "skew_deg", "rake_D", "t_c", "f_c", THICKNESS_TO_DIAMETER, SKEW_RADIANS)
+_BLANK = ("", "-", "\N{EN DASH}")
+_LEFT_HANDED = (
+    "a left-handed propeller is given as its right-handed mirror image: pitch without the minus, skew and rake as "
+    "they are"
+)
 _MINIMUM_ROWS = 5
 
 
@@ -68,7 +76,7 @@ def read_radial_table(path: str | Path, blade_count: int = 3, name: str | None =
     The file has a line of column names ``r_R,c_D,P_D,skew_deg,rake_D,t_c,f_c`` (any order, and other names in use such
     as OpenProp's r/R, P/D, Xs/D, f0/c, t0/c; t/D for t/c), then one row a radius from the hub to the tip (r/R = 1).
     Lines that start with # are comments, lines before the names are a title. Without skew or rake they are 0. A tip
-    chord of zero is allowed.
+    chord of zero is allowed, and leaves blank what a point does not have. Rows may come from the tip to the hub.
 
     Args:
         path: the file.
@@ -146,8 +154,8 @@ def _read(table: TextTable, source: str, name: str, blade_count: int) -> RadialF
     notes = list(table.notes)
     if start:
         notes.append(f"{start} lines before the line of column names left out")
-    lines = _table_lines(table, start + 1, notes)
-    rows = _rows(table, lines, header, places, source)
+    lines = _from_hub_to_tip(table, _table_lines(table, start + 1, notes), places["r_R"], notes)
+    rows = _rows(table, lines, header, places, source, notes)
     if len(rows) < _MINIMUM_ROWS:
         raise InputError(f"{source}: has {len(rows)} rows; a blade needs at least {_MINIMUM_ROWS} radii")
     _check_ends(rows, source, lines[-1].number, lines[0].number)
@@ -193,10 +201,23 @@ def _table_lines(table: TextTable, start: int, notes: list[str]) -> list[Line]:
     return lines
 
 
+def _from_hub_to_tip(table: TextTable, lines: list[Line], place: int, notes: list[str]) -> list[Line]:
+    """The rows turned round where all their radii descend; what is no number is left to be told with its line."""
+    try:
+        radii = [table.number(line.cells[place]) for line in lines]
+    except (ValueError, IndexError):
+        return lines
+    if len(radii) < _MINIMUM_ROWS or any(after >= before for before, after in itertools.pairwise(radii)):
+        return lines
+    notes.append("rows from the tip to the hub turned round")
+    return lines[::-1]
+
+
 def _rows(
-    table: TextTable, lines: Sequence[Line], header: Line, places: dict[str, int], source: str
+    table: TextTable, lines: Sequence[Line], header: Line, places: dict[str, int], source: str, notes: list[str]
 ) -> list[dict[str, float]]:
     rows: list[dict[str, float]] = []
+    left_blank = []
     for line in lines:
         where = f"{source}, line {line.number}"
         if len(line.cells) != len(header.cells):
@@ -205,18 +226,39 @@ def _rows(
             )
         row: dict[str, float] = {}
         for column in (*COLUMNS, THICKNESS_TO_DIAMETER, SKEW_RADIANS):
-            if column in places:
-                row[column] = _value(table, line.cells[places[column]], column, where)
+            if column not in places:
+                continue
+            cell = line.cells[places[column]]
+            of_a_point = bool(rows) and line is lines[-1] and row.get("c_D") == 0.0 and column in _NOTHING_AT_A_POINT
+            if of_a_point and _says_nothing(table, cell, column):
+                row[column] = rows[-1][column]
+                left_blank.append(column)
+            else:
+                row[column] = _value(table, cell, column, where)
         if rows and row["r_R"] <= rows[-1]["r_R"]:
             raise InputError(
                 f"{where}: r_R {row['r_R']:g} does not ascend from {rows[-1]['r_R']:g}; "
                 "sort the rows from the hub to the tip"
             )
         rows.append(row)
+    if left_blank:
+        notes.append(f"at the tip, which has no chord, as in the row before: {', '.join(left_blank)}")
     return rows
 
 
+def _says_nothing(table: TextTable, cell: str, column: str) -> bool:
+    """Whether a cell of a tip without chord is blank, or the thickness 0 that stands for 0/0."""
+    if cell.strip() in _BLANK:
+        return True
+    try:
+        return column == "t_c" and table.number(cell) == 0.0
+    except ValueError:
+        return False
+
+
 def _value(table: TextTable, cell: str, column: str, where: str) -> float:
+    if cell.strip() in _BLANK:
+        raise InputError(f"{where}: {column} is blank; give a number (a tip with chord 0 alone may leave it away)")
     try:
         value = table.number(cell)
     except ValueError as error:
@@ -224,6 +266,10 @@ def _value(table: TextTable, cell: str, column: str, where: str) -> float:
     if not math.isfinite(value):
         raise InputError(f"{where}: {column} is {cell[:40]}; give a finite number")
     low, high, remedy = _LIMITS[column]
+    if column == "P_D" and -high <= value < 0.0:
+        remedy = _LEFT_HANDED
+    if column == "t_c" and value < low:
+        remedy = f"a blade has some thickness everywhere: give at least {low:g}, at a tip with chord 0 none"
     if not low <= value <= high:
         raise InputError(f"{where}: {column} {value:g} is outside {low:g} to {high:g}; {remedy}")
     return value

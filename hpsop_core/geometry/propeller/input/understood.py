@@ -19,6 +19,8 @@ _USUAL = {
 }
 # Chord at the tip over that at 0.7 R: nothing or little of open propellers, about 1 of Kaplan blades in a nozzle.
 BROAD_TIP = 0.6
+# Tip against hub, in degrees: blades lean back, and a balanced one ends at about 0 or behind.
+FORWARD_SKEW = -5.0
 # Blades are skewed by some degrees or not at all; the largest skews, 2 rad, would be 2 degrees.
 LEAST_SKEW = 2.1
 
@@ -135,6 +137,12 @@ def _blade_doubts(table: RadialTable, columns: tuple[str, ...]) -> tuple[str, ..
         lines.append(
             f"the chord at the tip is {tip / at:.2f} of that at 0.7 R, as blades in a duct have it: ducts are not "
             "computed, the blade is taken as an open propeller's"
+        )
+    lead = float(np.degrees(table.skew[-1] - table.skew[0]))
+    if lead < FORWARD_SKEW:
+        lines.append(
+            f"the tip runs {-lead:.3g} degrees ahead of the hub section, into the rotation; if the blade is skewed "
+            "back, turn the sign of the column of skew (here positive is aft along the helix)"
         )
     skew = float(np.degrees(np.max(np.abs(table.skew))))
     if 0.0 < skew < LEAST_SKEW and not any("deg" in title.lower() or "rad" in title.lower() for title in columns):
