@@ -16,13 +16,10 @@ def panels_gdf(hull: Hull, title: str) -> str:
     """The port half's panels with the centreplane as plane of symmetry, m.
 
     Axes: x forward from midship (half of Lpp), y to port, z up from the waterline. Corners go counter-clockwise seen
-    from the water, as the format asks. The closure behind a wet transom is no hull and left out.
-
-    Raises:
-        SolverFailure: a wet transom too wide to be panelled.
+    from the water, as the format asks. What closes a wet transom in level 2 is no hull: it stays open.
     """
-    panels = hull_panels(hull, _LENGTHWISE, _GIRTHWISE)
-    quads = panels.quads[: len(panels.quads) - panels.tail_panels] - np.array([0.5 * hull.length, 0.0, hull.draft])
+    panels = hull_panels(hull, _LENGTHWISE, _GIRTHWISE, tail_wanted=False)
+    quads = panels.quads - np.array([0.5 * hull.length, 0.0, hull.draft])
     quads[..., 1] = np.maximum(quads[..., 1], 0.0)
     quads[..., 2] = np.minimum(quads[..., 2], 0.0)
     lines = [title[:72], f"1.0 {_GRAVITY} ULEN GRAV", "0 1 ISX ISY", f"{len(quads)}"]

@@ -7,6 +7,7 @@ from pathlib import Path
 
 import numpy as np
 
+from hpsop_core.errors import SolverFailure
 from hpsop_core.evaluation import fields
 from hpsop_core.evaluation.fields import PressureField, WaveField
 from hpsop_core.export.design import LeavingDesign
@@ -26,7 +27,11 @@ def write_fields(folder: Path, design: LeavingDesign) -> None:
         reference = design.reference
         waves = fields.waves(design.case, design.evaluation, condition=place, reference=reference)
         write_waves(folder / f"waves_{place + 1}.vtp", waves)
-        found = fields.pressures(design.case, design.evaluation, condition=place)
+        try:
+            found = fields.pressures(design.case, design.evaluation, condition=place)
+        except SolverFailure as failure:
+            why = f"format vtk needs level 2's pressures: {failure.reason}; leave vtk out of the formats"
+            raise SolverFailure(failure.stage, why) from failure
         write_pressure(folder / f"pressure_hull_{place + 1}.vtp", found.hull)
         write_pressure(folder / f"pressure_blades_{place + 1}.vtp", found.blades)
 

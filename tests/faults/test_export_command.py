@@ -7,13 +7,16 @@ import json
 import zipfile
 from pathlib import Path
 
+import numpy as np
 import pytest
 
-from hpsop_core import load_case, optimize
+from hpsop_core import load_case, load_hull, optimize
 from hpsop_core.cli.main import main
-from hpsop_core.errors import InputError
+from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.reference import Reference
 from hpsop_core.export import design_files, tables
+from hpsop_core.export.panel_files import panels_gdf
+from hpsop_core.geometry.hull.panels import hull_panels
 from hpsop_core.runs.reader import RunReader
 
 
@@ -98,6 +101,29 @@ def test_a_case_without_level_2_leaves_at_level_1(tmp_path: Path) -> None:
     ]
     assert main(words) == 0
     assert json.loads((tmp_path / "design.json").read_text())["level"] == 1
+
+
+def test_a_transom_that_level_2_cannot_close_still_leaves_as_panels(tmp_path: Path) -> None:
+    """A tug as broad at its end as amidships: its GDF, which leaves the tail out, held up the whole usual export."""
+    length, breadth, draft = 28.0, 10.0, 4.0
+    rows = ["station_x_m,waterline_z_m,half_breadth_m"]
+    for x in np.linspace(0.0, length, 15):
+        for z in np.linspace(0.0, 6.0, 10):
+            bow = 1.0 - max(0.0, 2.0 * x / length - 1.0) ** 2
+            rows.append(f"{x:.6g},{z:.6g},{0.5 * breadth * bow * min(1.0, z / draft) ** 0.5:.6g}")
+    file = tmp_path / "tug.csv"
+    file.write_text("\n".join(rows) + "\n")
+    hull = load_hull(file, length=length, draft=draft)
+    with pytest.raises(SolverFailure, match="wet transom"):
+        hull_panels(hull, 44, 9, 0.28)
+    lines = panels_gdf(hull, "a tug").splitlines()
+    quads = np.array([[float(word) for word in line.split()] for line in lines[4:]]).reshape(-1, 4, 3)
+    assert len(quads) == int(lines[3])
+    # The transom is upright, so the heights over the bottom's projection are the volume.
+    area = 0.5 * np.cross(quads[:, 2] - quads[:, 0], quads[:, 3] - quads[:, 1])[:, 2]
+    volume = abs(2.0 * np.sum(area * quads[..., 2].mean(axis=1)))
+    exact = breadth * draft * length * (0.5 + 1.0 / 3.0) * 2.0 / 3.0
+    assert volume == pytest.approx(exact, rel=0.02)  # flat panels of 48 by 12
 
 
 def test_a_folder_with_something_in_it_is_left_alone(run: RunReader, tmp_path: Path) -> None:

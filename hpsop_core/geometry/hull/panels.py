@@ -147,7 +147,7 @@ def _tail_points(edge: Array, draft: float, length: float, slowest: float | None
             f"closed smoothly within {room:.4g} m; this solver takes transoms up to "
             f"{2.0 * room / LEAST_TAIL_SLENDERNESS:.4g} m wide on this length, and up to "
             f"{2.0 * room / LEAST_DRY_SLENDERNESS:.4g} m where they are dry (V/sqrt(g h) of {DRY_TRANSOM:g}, here from "
-            f"Froude number {dry:.3f}; asked {'nothing' if slowest is None else format(slowest, '.3f')})",
+            f"Froude number {dry:.3f}{'' if slowest is None else f'; asked {slowest:.3f}'})",
         )
     reach = max(min(TAIL_SLENDERNESS * half_breadth, room), 1e-3 * length)
     s = np.linspace(1.0, 0.0, TAIL_PANELS + 1)[:, None]
@@ -158,7 +158,9 @@ def _tail_points(edge: Array, draft: float, length: float, slowest: float | None
     )
 
 
-def hull_panels(hull: Hull, lengthwise: int, girthwise: int, slowest: float | None = None) -> HullPanels:
+def hull_panels(
+    hull: Hull, lengthwise: int, girthwise: int, slowest: float | None = None, tail_wanted: bool = True
+) -> HullPanels:
     """Panels of a hull's underwater patches.
 
     Flat ends (a boss, a blunt nose) are closed by flat panels. A transom in the water, whose flow leaves the hull at
@@ -169,6 +171,7 @@ def hull_panels(hull: Hull, lengthwise: int, girthwise: int, slowest: float | No
         lengthwise: panels along a patch that spans more than half of the length; short patches get their share.
         girthwise: panels from keel to waterline of such a patch.
         slowest: the least Froude number that will be asked: it decides whether a wide transom is dry.
+        tail_wanted: False leaves a transom in the water open: the hull's own panels, of any transom.
 
     Raises:
         SolverFailure: a wet transom too wide to be closed.
@@ -188,7 +191,7 @@ def hull_panels(hull: Hull, lengthwise: int, girthwise: int, slowest: float | No
             if (name, end) not in hull.parent.caps:
                 continue
             if end == "first" and edge[-1, 1] > 0.0 and edge[-1, 2] >= (1.0 - 1e-9) * hull.draft:
-                tail = _tail_points(edge, hull.draft, hull.length, slowest)
+                tail = _tail_points(edge, hull.draft, hull.length, slowest) if tail_wanted else None
             else:
                 cap = _cap_quads(edge, end)
                 quads.append(cap)
@@ -222,7 +225,8 @@ def _transom_line(half_breadth: float, tail: Array, hull: Hull, slowest: float |
     depth = _transom_depth(tail[-1], hull.draft)
     line = (
         f"transom {2 * half_breadth:.4g} m wide and {depth:.4g} m deep in the water: closed by a tail of "
-        f"{float(tail[-1, -1, 0] - tail[0, -1, 0]):.4g} m in the wave calculation, whose waves count"
+        f"{float(tail[-1, -1, 0] - tail[0, -1, 0]):.4g} m in the wave calculation, whose waves count: another tail "
+        "changes Rw by a factor of two and more, which no stated error holds, so compare sterns by it, not ships"
     )
     if slowest is None:
         return f"{line}; the transom's own drag does not"
