@@ -156,14 +156,17 @@ class ConditionsSection:
                 f"conditions: {len(self.weights)} weights for {len(stated)} {name}; give one each, their sum is 1"
             )
         if any(b <= a for a, b in itertools.pairwise(stated)):
-            ordered = [f"{value:g}" for value in sorted(set(stated))]
-            raise InputError(
-                f"conditions: {name} must ascend; write [{', '.join(ordered)}] and sort the weights in the same way"
-            )
+            by_speed = dict.fromkeys(sorted(stated), 0.0)
+            for value, weight in zip(stated, self.weights, strict=True):
+                by_speed[value] += weight
+            ordered, weights = (", ".join(f"{one:g}" for one in row) for row in (by_speed, by_speed.values()))
+            raise InputError(f"conditions: {name} must ascend; write {name} = [{ordered}] and weights = [{weights}]")
         total = math.fsum(self.weights)
         if abs(total - 1.0) > 1e-9:
-            shares = f"; write for example [{', '.join(_shares(self.weights))}]" if total > 0.0 else ""
-            raise InputError(f"conditions: weights sum to {total:g}; they must sum to 1{shares}")
+            shares = ", ".join(_shares(self.weights if total > 0.0 else (1.0,) * len(stated)))
+            raise InputError(
+                f"conditions: weights sum to {total:.10g}; they must sum to 1; write for example [{shares}]"
+            )
 
     @property
     def speeds_are_fixed(self) -> bool:

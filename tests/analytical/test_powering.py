@@ -244,7 +244,13 @@ def test_a_file_with_speeds_alone() -> None:
 @pytest.mark.parametrize(
     ("changes", "words"),
     [
-        ({"speeds_knots": [24, 20]}, r"speeds_knots must ascend; write \[20, 24\]"),
+        (
+            {"speeds_knots": [24, 20], "weights": [0.65, 0.35]},
+            r"speeds_knots must ascend; write speeds_knots = \[20, 24\] and weights = \[0.35, 0.65\]",
+        ),
+        ({"speeds_knots": [20, 20]}, r"write speeds_knots = \[20\] and weights = \[1\]"),
+        ({"weights": [0, 0]}, r"weights sum to 0; they must sum to 1; write for example \[0.5, 0.5\]"),
+        ({"weights": [0.3333333, 0.6666666]}, "weights sum to 0.9999999; they"),
         (
             {"speeds_knots": [20, 24], "weights": [0.5, 0.4]},
             r"weights sum to 0.9; .* write for example \[0.5556, 0.4444\]",

@@ -13,7 +13,7 @@ from hpsop_core.geometry.analytic_bodies import wigley_panels
 from hpsop_core.geometry.hull.form import LongitudinalShift
 from hpsop_core.geometry.hull.hull import load_parent_hull
 from hpsop_core.geometry.hull.panels import HullPanels, grid_quads
-from hpsop_core.hydro.rankine.checks import check_panels
+from hpsop_core.hydro.rankine.checks import check_answer, check_panels
 from hpsop_core.hydro.rankine.solver import RankineSettings, solve, solve_panels, solver_axes
 from tests.two_speeds import TWO_SPEEDS
 
@@ -171,3 +171,11 @@ def test_odd_ships_give_positive_numbers_or_reasons(dimensions: tuple[float, flo
         numbers = (condition.wave_coefficient, condition.wave_coefficient_pressure, condition.sinkage, condition.trim)
         assert np.all(np.isfinite(numbers))
         assert condition.wave_coefficient > 0.0
+
+
+def test_no_waves_at_a_low_speed_name_the_speed_that_has_them() -> None:
+    """A wave of 2 pi Fn^2 L has 7 cells of L/31 at Fn 0.19 (0.1896); "take a higher speed" had to be guessed at."""
+    with pytest.raises(SolverFailure, match=r"5.2 cells .* take Froude number 0.19 or more, or level 1 alone"):
+        check_answer(0.163, -1e-6, 1e-5, np.zeros(3), 1.0 / 31.0)
+    with pytest.raises(SolverFailure, match="take a higher speed, or level 1 alone"):
+        check_answer(0.25, -1e-6, 1e-5, np.zeros(3), 1.0 / 31.0)

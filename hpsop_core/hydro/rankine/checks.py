@@ -27,6 +27,8 @@ LARGEST_SPEED_SQUARE = 12.0
 LARGEST_DOUBLE_BODY_DRAG = 2e-3
 # The Wigley hull at its main hump gives 5e-3, full parents at Froude number 0.5 a few times that.
 LARGEST_WAVE_COEFFICIENT = 0.06
+# Cells a transverse wave from which there are waves: five hulls had them with 6.3 to 8.1, one of six with 3.8 to 4.9.
+CELLS_WITH_WAVES = 7.0
 
 
 def check_froude_numbers(froude_numbers: Sequence[float]) -> tuple[float, ...]:
@@ -134,10 +136,13 @@ def check_answer(froude_number: float, by_plane: float, by_pressure: float, elev
         raise SolverFailure("rankine", f"the solution at Froude number {froude_number:g} is not finite")
     if by_plane <= 0.0:
         cells = 2.0 * np.pi * froude_number**2 / step
+        enough = np.ceil(200.0 * np.sqrt(CELLS_WITH_WAVES * step / (2.0 * np.pi))) / 200.0
+        speed = f"Froude number {enough:g} or more" if froude_number < enough else "a higher speed"
         raise SolverFailure(
             "rankine",
             f"wave coefficient {by_plane:.2e} at Froude number {froude_number:g} is not positive; a transverse "
-            f"wave has {cells:.1f} cells of the surface grid: take a higher speed",
+            f"wave has {cells:.1f} cells of the surface grid: take {speed}, or level 1 alone with the waves stated "
+            '(constants.wave_calibration = "stated")',
         )
     if by_plane > LARGEST_WAVE_COEFFICIENT:
         raise SolverFailure(

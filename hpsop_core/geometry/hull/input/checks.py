@@ -62,7 +62,10 @@ def check_size(table: ShipTable) -> tuple[str, ...]:
             "(it is never scaled)"
         )
     if draft > z[-1] * (1.0 + 1e-9):
-        raise InputError(f"{name}: the draft {draft:g} m is above the highest waterline {z[-1]:g} m of the table")
+        raise InputError(
+            f"{name}: the draft {draft:g} m is above the highest waterline {z[-1]:g} m of the table; give a draft up "
+            f"to {z[-1]:g} m, or add the waterlines above it"
+        )
     wet = y[:, z <= draft * (1.0 + 1e-9)]
     if wet.shape[1] == 0 or not np.any(wet > 0.0):
         raise InputError(f"{name}: no half-breadth below the draft {draft:g} m is positive")
