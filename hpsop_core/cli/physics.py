@@ -124,10 +124,12 @@ def _tell_own_hull(case: Case) -> None:
 
 
 def _tell_own_propeller(file: str, blade_count: int) -> None:
-    """What was understood of a radial table, on standard error: what was assumed of it, and what is doubted."""
+    """What was assumed of a radial table and what is doubted of it, on standard error; nothing of a plain one."""
     from hpsop_core.geometry.propeller.input import read_propeller
 
-    print(read_propeller(file, blade_count), file=sys.stderr)
+    told = read_propeller(file, blade_count)
+    for line in (*told.assumed, *(f"warning: {doubt}" for doubt in told.warnings)):
+        print(f"{told.table.name}: {line}", file=sys.stderr)
 
 
 def print_evaluation(result: Evaluation) -> None:

@@ -114,7 +114,8 @@ def test_the_good_table_is_good(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("length", "draft", "message"),
-    [(LENGTH, 9.0, "highest waterline .* a draft up to"), (LENGTH, -1.0, "draft must be"), (0.0, DRAFT, "length must be"),
+    [(LENGTH, 9.0, "highest waterline .* a draft up to"), (LENGTH, -1.0, "draft must be"),
+     (0.0, DRAFT, "length must be"),
      (float("nan"), DRAFT, "length must be"), (300.0, DRAFT, "span"), (LENGTH, 0.05, "draft")],
 )  # fmt: skip
 def test_bad_dimensions(tmp_path: Path, length: float, draft: float, message: str) -> None:

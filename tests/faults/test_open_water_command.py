@@ -32,7 +32,8 @@ def blade(pitch: float = 1.0, thickness: float = 1.0) -> str:
 def answer(capsys: pytest.CaptureFixture[str], *arguments: str) -> dict[str, Any]:
     assert main(["open-water", *arguments, "--json"]) == 0
     captured = capsys.readouterr()
-    assert captured.err == ""
+    # The elliptic blade of these tests is nearly as broad at the tip as one of a duct.
+    assert all("ducts are not computed" in line for line in captured.err.splitlines())
     result: dict[str, Any] = json.loads(captured.out)
     return result
 
