@@ -311,6 +311,8 @@ def test_waves_have_a_legend_in_metres(page, session, explorer):
     page.wait_for_selector('.hpsop-overlay-card:has-text("wave elevation ζ [m]")')
     client = explorer.server.get_clients()[session.client_id]
     wait_until(lambda: client.scene.get_handle_by_name("/waves") is not None, 30, "the wave mesh")
+    # in a low window a scale takes the place of all but the first numbers, not of the ship
+    assert page.locator(".hpsop-overlay-card [data-headline]:visible").count() == 2
     press(page, "switch", "waves")
     wait_until(lambda: "waves" not in session.legends, 20, "the waves to go")
 
