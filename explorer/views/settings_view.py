@@ -351,7 +351,9 @@ class SettingsView:
             changed = joined([soft("Changed (●):"), chips(*words)])
         history = self._app.history
         # a run on display keeps its own case
-        waiting = ", for the next run" if count and self._app.picture.name else ""
+        picture = self._app.picture
+        another = count or draft.base.name != picture.case.name
+        waiting = ", for the next run" if another and picture.name else ""
         # always there: what lies below must not move away from under the mouse
         steps = chips(
             chip(
