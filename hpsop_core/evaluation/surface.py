@@ -20,8 +20,10 @@ import numpy as np
 from numpy.polynomial import chebyshev
 
 from hpsop_core.case.case import Case
+from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.case.variables import VARIABLE_NAMES, DesignVariables
 from hpsop_core.evaluation.gaussian_process import GaussianProcess, fit
+from hpsop_core.evaluation.learnt_back import LearntBack, learn_back
 from hpsop_core.evaluation.levels import WaveAnswer
 from hpsop_core.evaluation.propeller_answer import (
     ADVANCE_RANGE,
@@ -66,6 +68,7 @@ class HeldOut:
         resistance, greatest_resistance: root mean square and greatest error of the total resistance as a part of it,
             over all conditions.
         efficiency, greatest_efficiency: the same of the open-water efficiency.
+        greatest_back_share: greatest error of the back's share under vapour pressure, where the case limits it.
     """
 
     designs: int
@@ -74,6 +77,7 @@ class HeldOut:
     greatest_resistance: float
     efficiency: float
     greatest_efficiency: float
+    greatest_back_share: float = 0.0
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,12 +89,14 @@ class Surface:
         propeller: KT at the curve's nodes, then KQ.
         propeller_scale: root mean square of KT and of KQ over designs and nodes.
         held_out: its error.
+        back: the share of the blades' back under vapour pressure; None where the case has no limit on it.
     """
 
     waves: tuple[GaussianProcess, ...]
     propeller: GaussianProcess
     propeller_scale: tuple[float, float]
     held_out: HeldOut
+    back: LearntBack | None = None
 
     def answers(
         self,
@@ -114,6 +120,12 @@ class Surface:
             answers.append(WaveAnswer(math.exp(float(logarithm[0]))))
         thrust, torque = np.split(curve, 2)
         return tuple(answers), PropellerAnswer(PropellerCurve(_nodes(), thrust, torque), None)
+
+    def back_told(
+        self, case: Case, variables: DesignVariables, conditions: Sequence[ConditionResult]
+    ) -> tuple[ConditionResult, ...] | None:
+        """As ``LearntBack.told``; None where nothing was learnt of it."""
+        return None if self.back is None else self.back.told(case, variables, conditions)
 
 
 def learn(case: Case, evaluations: Sequence[Mapping[str, Any]]) -> Surface | None:
@@ -155,11 +167,19 @@ def learn(case: Case, evaluations: Sequence[Mapping[str, Any]]) -> Surface | Non
         sure &= np.max(part, axis=1) <= PROPELLER_DOUBT * size
     resistance = np.abs(np.stack(errors, axis=1)[sure])
     efficiency = np.abs(_efficiency_errors(propeller.held_out, curves)[sure])
+    back = learn_back(case, used)
     return Surface(
         tuple(waves),
         propeller,
         (scale[0], scale[1]),
-        HeldOut(len(used), int(np.sum(sure)), *_size(resistance), *_size(efficiency)),
+        HeldOut(
+            len(used),
+            int(np.sum(sure)),
+            *_size(resistance),
+            *_size(efficiency),
+            0.0 if back is None else back.greatest_error,
+        ),
+        back,
     )
 
 

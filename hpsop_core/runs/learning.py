@@ -63,11 +63,13 @@ def told(surface: int, errors: Mapping[str, float]) -> str:
     """A surface and its error in words."""
     if not errors:
         return f"surface {surface}: too few solved designs to learn from; all are solved"
+    back = errors.get("greatest_back_share", 0.0)
     return (
         f"surface {surface}: learnt from {errors['designs']:.0f} solved designs; {errors['answered']:.0f} of them "
         "predicted from the others without doubt: "
         f"resistance {100 * errors['resistance']:.3f} % off (at most {100 * errors['greatest_resistance']:.3f}), "
         f"efficiency {100 * errors['efficiency']:.4f} % (at most {100 * errors['greatest_efficiency']:.4f})"
+        + (f", the back's share under vapour pressure at most {100 * back:.1f} % of the back" if back else "")
     )
 
 

@@ -116,3 +116,42 @@ def test_with_a_limit_on_back_cavitation_the_propeller_is_solved(case: Case, sur
     exact = evaluate(limited, case.initial.variables, 1, dataclasses.replace(surface, surface=None))
     assert result.ok and exact.ok and result.predicted
     assert result.open_water == exact.open_water
+
+
+def _share(condition: dict[str, float], variables: DesignVariables) -> float:
+    """Cavitation on the back that begins steeply and is counted in panels of 0.25 %."""
+    load = condition["thrust_coefficient"] / (condition["advance_coefficient"] * variables.expanded_area_ratio)
+    return float(np.round(max(0.0, 0.35 * (load - 0.42)) / 0.0025) * 0.0025)
+
+
+def test_cavitation_on_the_back_is_predicted_far_from_its_limit_alone(
+    case: Case, reference: Reference, solved: list[Ok]
+) -> None:
+    limit = 0.05
+    limited = case.replaced("constraints", back_cavitation_limit=limit, cavitation_conditions="all")
+    documents = [result.as_dict() for result in solved]
+    for data in documents:
+        variables = DesignVariables.from_dict(data["variables"])
+        data["conditions"] = [{**c, "blade_cavitating_share": _share(c, variables)} for c in data["conditions"]]
+    surface, errors = learnt(limited, reference, documents)
+    assert surface.surface is not None and 0.0 < errors["greatest_back_share"] < 0.05
+    told = {"kept": 0, "broken": 0, "asked": 0}
+    for variables in designs(case, 60, 3):
+        truth = evaluate(case, variables, 1, reference)
+        assert truth.ok
+        shares = [_share(dataclasses.asdict(c), variables) for c in truth.conditions]
+        conditions = surface.surface.back_told(limited, variables, truth.conditions)
+        if conditions is None:
+            told["asked"] += 1
+            continue
+        guesses = [c.blade_cavitating_share or 0.0 for c in conditions]
+        assert guesses == pytest.approx(shares, abs=0.05)
+        assert (max(guesses) > limit) == (max(shares) > limit)
+        # nothing else of a pressure is made up
+        assert all(c.blade_cavitation_margin is None for c in conditions)
+        told["broken" if max(guesses) > limit else "kept"] += 1
+    # shares lie from nothing to several times the limit
+    assert min(told.values()) >= 3
+    # where the limit is no limit, and where nothing was learnt
+    assert surface.surface.back_told(case, solved[0].variables, solved[0].conditions) is None
+    assert learnt(limited, reference, [r.as_dict() for r in solved])[0].surface.back is None  # type: ignore[union-attr]
