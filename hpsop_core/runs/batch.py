@@ -51,7 +51,7 @@ def reconnect(workers: Workers, control: RunControl, lost: Callable[[str], None]
         control.wait(_RECONNECT_INTERVAL)
         try:
             if not control.stopped:
-                workers.rebuild()
+                workers.reach()
             break
         except WorkersLostError:
             continue
@@ -273,7 +273,7 @@ class BatchEvaluator:
         if self._take_finished():
             if not self._workers.blamable:
                 self._requeue()
-                self._workers.rebuild()
+                self._workers.reach()
                 return
             # Others of the broken pool may have finished; what has not is a suspect.
             concurrent.futures.wait(self._under_way, timeout=_LAST_RESULTS)

@@ -188,6 +188,15 @@ class DaskWorkers:
                 self._client.wait_for_workers(1, timeout=30)
                 self._count()
                 return
+        self.reach()
+
+    def reach(self) -> None:
+        """Connect anew. Nothing is restarted: a worker without a nanny, which had come back, would end by it for good.
+
+        Raises:
+            WorkersLostError, WorkersUnavailableError: as ``rebuild``.
+        """
+        self._versions, self._executor = {}, None
         self._leave()
         try:
             self._connect(5)

@@ -170,6 +170,10 @@ class LocalWorkers:
         self._kill()
         self._start()
 
+    def reach(self) -> None:
+        """As ``rebuild``: a pool that lost a process is of no more use."""
+        self.rebuild()
+
     def _kill(self) -> None:
         pool, self._pool = self._pool, None
         if pool is None:

@@ -427,6 +427,8 @@ class RunDriver:
                 while not concurrent.futures.wait([future], timeout=_EVENT_INTERVAL).done:
                     if self._control.stopped:
                         raise _StoppedError
+                    # a result that was under way when a cluster's scheduler died is never done
+                    workers.look()
                 done, text = future.result()
                 if done:
                     return str(text)
@@ -436,7 +438,7 @@ class RunDriver:
                 if self._control.stopped:
                     raise _StoppedError from None
                 try:
-                    workers.rebuild()
+                    workers.reach()
                 except WorkersLostError as error:
                     reconnect(workers, self._control, self._lost, str(error))
             except WorkersLostError as error:

@@ -15,7 +15,7 @@ class WorkersUnavailableError(InputError):
 
 
 class WorkersLostError(WorkersUnavailableError):
-    """Workers that were there cannot be reached just now; ``Workers.rebuild`` may reach them later."""
+    """Workers that were there cannot be reached just now; ``Workers.reach`` may succeed later."""
 
 
 class Workers(Protocol):
@@ -65,6 +65,13 @@ class Workers(Protocol):
         Raises:
             WorkersLostError: a cluster does not answer.
             WorkersUnavailableError: no new workers can be had.
+        """
+
+    def reach(self) -> None:
+        """Have workers again after they died or were lost; where some live and answer, they are left as they are.
+
+        Raises:
+            WorkersLostError, WorkersUnavailableError: as ``rebuild``.
         """
 
     def close(self) -> None:

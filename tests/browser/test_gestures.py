@@ -413,7 +413,12 @@ def test_steps_are_taken_back_and_a_link_opens_the_same(page, session, explorer)
     turned = session.options.topsides
     page.locator('[data-act="switch"][data-arg="topsides"]').focus()
     for wanted_now in (not turned, turned):
-        page.wait_for_function("() => document.activeElement.dataset.arg === 'topsides'")
+        # drawn anew: pressed as it was before, or as the press before this one made it
+        page.wait_for_function(
+            "on => { const at = document.activeElement;"
+            " return at.dataset.arg === 'topsides' && at.getAttribute('aria-pressed') === on; }",
+            arg=str(not wanted_now).lower(),
+        )
         page.keyboard.press("Enter")
         wait_until(lambda wanted_now=wanted_now: session.options.topsides == wanted_now, 20, "the topsides")
     press(page, "camera", "plan")

@@ -18,6 +18,7 @@ from run_files import content, small_case, wait_until
 
 from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController, optimize
+from hpsop_core.runs.dask_workers import DaskWorkers
 from hpsop_core.runs.reader import open_run
 
 pytest.importorskip("distributed")
@@ -171,6 +172,11 @@ def test_a_lost_scheduler_pauses_the_run_with_one_line_until_it_is_back(tmp_path
     optimize(small_case(), local, workers=1, physics=physics())
     own_cluster.start()
     executor = f"dask:127.0.0.1:{own_cluster.port}"
+    # Dask's client may have found the new scheduler by itself; its worker has no nanny, and a restart would end it.
+    workers = DaskWorkers(f"127.0.0.1:{own_cluster.port}")
+    workers.reach()
+    assert workers.submit(abs, -1).result(60.0) == 1 and own_cluster.processes[-1].poll() is None
+    workers.close()
     with RunController(path, small_case(), executor=executor, physics=physics(quick_physics.slow)) as run:
         run.start()
         wait_until(lambda: run.snapshot().generation >= 1, 90.0)

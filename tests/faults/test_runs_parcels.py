@@ -60,6 +60,8 @@ class _Threads:
     def rebuild(self) -> None:
         raise AssertionError("nothing broke")
 
+    reach = rebuild
+
     def close(self) -> None:
         self.pool.shutdown()
 
