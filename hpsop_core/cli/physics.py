@@ -8,6 +8,7 @@ import sys
 from collections.abc import Sequence
 from typing import TYPE_CHECKING, Any
 
+from hpsop_core.assets import SHIPPED_PROPELLERS
 from hpsop_core.case.case import KNOT
 from hpsop_core.case.fields import FieldRule
 from hpsop_core.cli.arguments import (
@@ -34,6 +35,7 @@ if TYPE_CHECKING:
     from hpsop_core.case.case import Case
     from hpsop_core.case.design_numbers import ConditionResult
     from hpsop_core.geometry.hull.hull import Hull
+    from hpsop_core.geometry.propeller.input import UnderstoodPropeller
     from hpsop_core.geometry.propeller.propeller import Propeller
 
 
@@ -106,8 +108,7 @@ def _evaluate(arguments: argparse.Namespace) -> int:
 
         result = with_stated_errors(case, evaluate(case, variables, arguments.level))
     _tell_own_hull(case)
-    if case.propeller.geometry:
-        _tell_own_propeller(case.propeller.geometry, case.propeller.geometry_blade_count)
+    _tell_own_propeller(case)
     if arguments.json:
         print_json(result.as_dict())
     else:
@@ -123,11 +124,16 @@ def _tell_own_hull(case: Case) -> None:
         print(own_hull(case.hull).understood, file=sys.stderr)
 
 
-def _tell_own_propeller(file: str, blade_count: int) -> None:
-    """What was assumed of a radial table and what is doubted of it, on standard error; nothing of a plain one."""
-    from hpsop_core.geometry.propeller.input import read_propeller
+def _tell_own_propeller(case: Case) -> None:
+    """What was understood of the radial table that a case names, on standard error."""
+    from hpsop_core.evaluation.propeller_answer import own_propeller
 
-    told = read_propeller(file, blade_count)
+    if case.propeller.geometry:
+        _tell_table(own_propeller(case.propeller))
+
+
+def _tell_table(told: UnderstoodPropeller) -> None:
+    """What was assumed of a radial table and what is doubted of it; nothing of a plain one."""
     for line in (*told.assumed, *(f"warning: {doubt}" for doubt in told.warnings)):
         print(f"{told.table.name}: {line}", file=sys.stderr)
 
@@ -333,9 +339,9 @@ def _open_water(arguments: argparse.Namespace) -> int:
     from hpsop_core.case.case import Case
     from hpsop_core.evaluation import open_water as test
     from hpsop_core.geometry.from_files import FEWEST_BLADES, MOST_BLADES
+    from hpsop_core.geometry.propeller.input import read_propeller
 
     advance = number_list(arguments.advance, test.ADVANCE_RULE, "--advance")
-    blades: float | None = None
     diameter = checked_option(arguments.diameter, test.DIAMETER_RULE, "--diameter")
     rate = checked_option(arguments.rotation_rate, test.ROTATION_RATE_RULE, "--rotation-rate")
     viscosity = checked_option(arguments.viscosity, test.VISCOSITY_RULE, "--viscosity")
@@ -343,6 +349,7 @@ def _open_water(arguments: argparse.Namespace) -> int:
         raise InputError("open-water: give either a CASE or --geometry FILE.csv with --blades")
     subject: Case | Propeller
     variables = None
+    own: UnderstoodPropeller | None = None
     if arguments.geometry is not None:
         if arguments.blades is None:
             raise InputError("open-water: --geometry needs --blades, the number of blades")
@@ -350,6 +357,8 @@ def _open_water(arguments: argparse.Namespace) -> int:
             raise InputError("open-water: --set changes a case's design; a radial table is taken as it is")
         blades = checked_option(arguments.blades, FieldRule("integer", "", "", FEWEST_BLADES, MOST_BLADES), "--blades")
         subject = load_propeller(arguments.geometry, int(blades or 0))
+        if arguments.geometry not in SHIPPED_PROPELLERS:
+            own = read_propeller(arguments.geometry, subject.blade_count)
     else:
         if arguments.blades is not None:
             raise InputError("open-water: --blades goes with --geometry; change a case by --set blade_count=Z")
@@ -359,10 +368,10 @@ def _open_water(arguments: argparse.Namespace) -> int:
         rotation_rate=MODEL_ROTATION_RATE if rate is None else rate,
         viscosity=MODEL_VISCOSITY if viscosity is None else viscosity, inviscid=arguments.inviscid,
     )  # fmt: skip
-    if arguments.geometry is not None:
-        _tell_own_propeller(arguments.geometry, int(blades or 0))
-    elif isinstance(subject, Case) and subject.propeller.geometry:
-        _tell_own_propeller(subject.propeller.geometry, subject.propeller.geometry_blade_count)
+    if isinstance(subject, Case):
+        _tell_own_propeller(subject)
+    elif own is not None:
+        _tell_table(own)
     if arguments.json:
         print_json(result.as_dict())
         return 0

@@ -53,16 +53,21 @@ def parent_table(section: PropellerSection) -> RadialTable:
     Raises:
         InputError: a file that cannot be used.
     """
-    return _own_table(section).table if section.geometry else load_propeller(section.parent)
+    return own_propeller(section).table if section.geometry else load_propeller(section.parent)
 
 
 def propeller_warnings(section: PropellerSection) -> tuple[str, ...]:
     """What is doubted of the radial table that a case names: nothing of a shipped one."""
-    return _own_table(section).warnings if section.geometry else ()
+    return own_propeller(section).warnings if section.geometry else ()
 
 
 @lru_cache(maxsize=8)
-def _own_table(section: PropellerSection) -> UnderstoodPropeller:
+def own_propeller(section: PropellerSection) -> UnderstoodPropeller:
+    """The radial table of one's own that a case names, with what was understood of its file.
+
+    Raises:
+        InputError: a file that cannot be used.
+    """
     return read_propeller(Path(section.geometry), section.geometry_blade_count)
 
 

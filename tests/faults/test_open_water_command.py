@@ -46,6 +46,9 @@ def test_shipped_propeller_as_a_case_and_as_a_table(
     table.write_text(read_asset_text("propellers", "p4119.csv"), encoding="utf-8")
     of_case = answer(capsys, TWO_SPEEDS, "--advance", "0.5,0.7", "--level", level)
     of_table = answer(capsys, "--geometry", str(table), "--blades", "3", "--advance", "0.5,0.7", "--level", level)
+    # a shipped propeller's name is no file to be told of
+    by_name = answer(capsys, "--geometry", "p4119", "--blades", "3", "--advance", "0.5,0.7", "--level", level)
+    assert by_name["points"] == of_table["points"]
     for a, b in zip(of_case["points"], of_table["points"], strict=True):
         # the case scales the chords to an expanded area ratio of 0.607, the table has 0.6066
         assert a["thrust_coefficient"] == pytest.approx(b["thrust_coefficient"], rel=1e-3)
