@@ -101,9 +101,7 @@ def tour_card(index: int) -> Markup:
     """A step of the tour with its buttons."""
     step, last = TOUR[index], index == len(TOUR) - 1
     before = _button("tour", str(index - 1), "Back") if index else Markup("")
-    after = (
-        _button("tour", "end", "Done", " data-next") if last else _button("tour", str(index + 1), "Next", " data-next")
-    )
+    after = _button("tour", "end" if last else str(index + 1), "Done" if last else "Next", " data-next")
     leave = Markup("") if last else _button("tour", "end", "Leave the tour")
     return fill(
         '<div class="card tour" data-point="{}"><b>{}</b> <span class="soft">{} of {}</span><p>{}</p>'

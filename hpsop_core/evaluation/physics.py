@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Callable
 from dataclasses import dataclass, replace
+from functools import partial
 from typing import Literal
 
 import numpy as np
@@ -174,40 +175,22 @@ def compute(
     hull = build_hull(hull_key)
     froude_numbers = own_froude_numbers(case, hull, basis.speeds)
     propeller_key = propeller_variables(case.propeller, variables)
-    if surface is not None:
+    assembled = partial(_assembled, case, variables, level, basis, froude_numbers, hull)
+    told = None if surface is None else surface.answers(hull, variables, froude_numbers, propeller_key)
+    if surface is not None and told is not None:
+        waves, answer = told
         with contextlib.suppress(SolverFailure):
-            guess = _predicted(case, variables, level, basis, froude_numbers, hull, surface)
-            if guess is not None:
+            guess = assembled(waves, answer, predicted=True)
+            if case.constraints.back_cavitation_limit is None:
                 return guess
+            conditions = surface.back_told(case, variables, guess.numbers.conditions)
+            if conditions is not None:
+                return replace(guess, numbers=replace(guess.numbers, conditions=conditions))
+            # Near to the limit it is the pressures themselves that decide.
+            answer = propeller_answer(propeller_key, level, blade_drag(case.constants))
+            return assembled(waves, answer, predicted=True)
     answer = propeller_answer(propeller_key, level, blade_drag(case.constants))
-    waves = wave_answers(hull_key, level, froude_numbers)
-    return _assembled(case, variables, level, basis, froude_numbers, hull, waves, answer)
-
-
-def _predicted(
-    case: Case,
-    variables: DesignVariables,
-    level: int,
-    basis: Basis,
-    froude_numbers: tuple[float, ...],
-    hull: Hull,
-    surface: Surface,
-) -> Physics | None:
-    """What a surface says; None where it is in doubt."""
-    key = propeller_variables(case.propeller, variables)
-    told = surface.answers(hull, variables, froude_numbers, key)
-    if told is None:
-        return None
-    waves, answer = told
-    guess = _assembled(case, variables, level, basis, froude_numbers, hull, waves, answer, predicted=True)
-    if case.constraints.back_cavitation_limit is None:
-        return guess
-    conditions = surface.back_told(case, variables, guess.numbers.conditions)
-    if conditions is not None:
-        return replace(guess, numbers=replace(guess.numbers, conditions=conditions))
-    # Near to the limit it is the pressures themselves that decide.
-    answer = propeller_answer(key, level, blade_drag(case.constants))
-    return _assembled(case, variables, level, basis, froude_numbers, hull, waves, answer, predicted=True)
+    return assembled(wave_answers(hull_key, level, froude_numbers), answer)
 
 
 @dataclass(frozen=True)

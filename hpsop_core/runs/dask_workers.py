@@ -196,7 +196,7 @@ class DaskWorkers:
         Raises:
             WorkersLostError, WorkersUnavailableError: as ``rebuild``.
         """
-        self._versions, self._executor = {}, None
+        self._versions = {}
         self._leave()
         try:
             self._connect(5)

@@ -97,7 +97,10 @@ class LocalWorkers:
         multiprocessing.forkserver.set_forkserver_preload(["hpsop_core.runs.preload"])
         # First, because its start unblocks the very signals that we block for the fork server's.
         multiprocessing.resource_tracker.ensure_running()
-        with _one_thread_environment(), _signals_blocked(), _temporary_files_in(_own_folder()):
+        # A process inherits the mask: Ctrl-C in a terminal, or a service manager's SIGTERM to all, shall not tear the
+        # fork server away from under the run that is just being stopped in good order.
+        ends = _signals_blocked("SIGINT", "SIGTERM", "SIGHUP")
+        with _one_thread_environment(), ends, _temporary_files_in(_own_folder()):
             multiprocessing.forkserver.ensure_running()
         return "forkserver"
 
@@ -129,7 +132,9 @@ class LocalWorkers:
         context = multiprocessing.get_context(self.prepare())
         self._warm = set()
         self._pool = ProcessPoolExecutor(self._count, context, initializer=start_worker)
-        with _one_thread_environment(), _broken_pipes_survived():
+        # The pool's threads, which begin here, write to workers that we kill. Python ignores the signal of a broken
+        # pipe, but a library in the same process may have taken that back (gmsh does), and it would end the process.
+        with _one_thread_environment(), _signals_blocked("SIGPIPE"):
             probes = [self._pool.submit(presence_task, 0.02) for _ in range(self._count)]
         # What a worker imports takes seconds, on a starved machine a minute: who stops the run does not wait for it.
         give_up = time.monotonic() + _START_LIMIT
@@ -274,24 +279,12 @@ def _temporary_files_in(folder: Path) -> Iterator[None]:
 
 
 @contextlib.contextmanager
-def _broken_pipes_survived() -> Iterator[None]:
-    # The pool's threads, which begin here, write to workers that we kill. Python ignores the signal of a broken pipe,
-    # but a library in the same process may have taken that back (gmsh does), and it would end the process.
-    if not hasattr(signal, "SIGPIPE"):
+def _signals_blocked(*names: str) -> Iterator[None]:
+    # Windows has neither the mask nor all of the signals.
+    if not hasattr(signal, "pthread_sigmask"):
         yield
         return
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGPIPE})
-    try:
-        yield
-    finally:
-        signal.pthread_sigmask(signal.SIG_SETMASK, before)
-
-
-@contextlib.contextmanager
-def _signals_blocked() -> Iterator[None]:
-    # A process inherits the mask: Ctrl-C in a terminal, or a service manager's SIGTERM to all, shall not tear the fork
-    # server away from under the run that is just being stopped in good order.
-    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.SIGINT, signal.SIGTERM, signal.SIGHUP})
+    before = signal.pthread_sigmask(signal.SIG_BLOCK, {signal.Signals[name] for name in names})
     try:
         yield
     finally:
