@@ -4,8 +4,6 @@ from __future__ import annotations
 
 import math
 
-import numpy as np
-
 from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.evaluation.hull_answer import ResistancePoint
@@ -154,4 +152,4 @@ def _required_area_ratio(
 
 def _chord_07r(propeller: Propeller) -> float:
     """Chord length at 0.7 R in m."""
-    return float(propeller.table.at(np.array(0.7)).chord_ratio) * propeller.diameter
+    return float(propeller.table.at_07R.chord_ratio) * propeller.diameter

@@ -41,17 +41,18 @@ def swept_points(hull: Hull, propeller: Propeller) -> Array:
 
     At each of some radii the circles of the leading edge, the mid-chord and the trailing edge.
     """
-    return _on_circles(*_circles(hull, propeller), 0.5 * propeller.diameter, hull.shaft_height)
+    circles = _circles(propeller, propeller_plane_x(hull, propeller))
+    return _on_circles(*circles, 0.5 * propeller.diameter, hull.shaft_height)
 
 
-def _circles(hull: Hull, propeller: Propeller) -> tuple[Array, Array]:
+def _circles(propeller: Propeller, plane_x: float) -> tuple[Array, Array]:
     """The circles about the shaft on which the swept points lie: of each its x in ship axes, m, and r/R."""
     radii = np.array(_RADII)
     sections = propeller.table.at(radii)
     along = radii * sections.skew / np.cos(sections.pitch_angle)
     half = sections.chord_ratio * np.array([[-1.0], [0.0], [1.0]])
     downstream = 2.0 * sections.rake_ratio + (along + half) * np.sin(sections.pitch_angle)
-    x = propeller_plane_x(hull, propeller) - 0.5 * propeller.diameter * downstream
+    x = plane_x - 0.5 * propeller.diameter * downstream
     return x.ravel(), np.tile(radii, len(half))
 
 
@@ -73,9 +74,10 @@ def propeller_clearance(hull: Hull, propeller: Propeller) -> float:
         hull: the design's.
         propeller: the design's.
     """
-    x, radii = _circles(hull, propeller)
+    plane_x = propeller_plane_x(hull, propeller)
+    x, radii = _circles(propeller, plane_x)
     swept = _on_circles(x, radii, 0.5 * propeller.diameter, hull.shaft_height)
-    near = _hull_points(hull, propeller_plane_x(hull, propeller), propeller.diameter)
+    near = _hull_points(hull, plane_x, propeller.diameter)
     if not len(near):
         return float(propeller.diameter)
     inside = _inside(hull, swept)

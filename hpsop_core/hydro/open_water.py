@@ -55,6 +55,6 @@ def reynolds_number_07R(
         rotation_rate: n in 1/s.
         viscosity: kinematic, in m2/s.
     """
-    chord = float(propeller.table.at(np.array(0.7)).chord_ratio)
+    chord = float(propeller.table.at_07R.chord_ratio)
     speed = np.sqrt(np.asarray(advance_coefficient, dtype=np.float64) ** 2 + (0.7 * np.pi) ** 2)
     return np.asarray(rotation_rate * propeller.diameter**2 * chord * speed / viscosity)

@@ -203,7 +203,7 @@ def camber_at_full_scale() -> Rows:
     """Change of KT, KQ and efficiency in % where a full-scale blade keeps more of its camber, D 9 m, J 0.7."""
     for blades in (3, 5, 7):
         propeller = propeller_family(load_propeller(), 9.0, blades)
-        chord_07 = float(propeller.table.at(np.array(0.7)).chord_ratio)
+        chord_07 = float(propeller.table.at_07R.chord_ratio)
         scaled = SectionDrag.full_scale(camber_scaling="reynolds")
         gain = scaled.camber_gain(propeller.diameter, chord_07)
         for level in (1, 2):

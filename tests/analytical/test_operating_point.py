@@ -23,6 +23,11 @@ def test_polynomial_through_the_nodes_is_the_curve() -> None:
     np.testing.assert_allclose(torque, 0.07 - 0.04 * advance, atol=1e-14)
 
 
+def test_thrust_at_one_j_is_the_curves_to_the_bit() -> None:
+    thrust, _ = CURVE.coefficients(np.linspace(0.2, 1.1, 101))
+    assert [CURVE.thrust_at(advance) for advance in np.linspace(0.2, 1.1, 101).tolist()] == thrust.tolist()
+
+
 @pytest.mark.parametrize("resistance", [0.8e6, 2.5e6, 6.0e6])
 def test_identities_at_the_operating_point(resistance: float) -> None:
     point = match(CURVE, resistance, WAKE, DEDUCTION, RHO, SPEED, DIAMETER)

@@ -49,7 +49,7 @@ class Propeller:
     @property
     def pitch_diameter_ratio_07R(self) -> float:
         """Absolute P/D at 0.7 R."""
-        return float(self.table.at(np.array(0.7)).pitch_ratio)
+        return float(self.table.at_07R.pitch_ratio)
 
     def with_diameter(self, diameter: float) -> Propeller:
         """The geometrically similar propeller of another diameter (a model of it, for example), D in m."""

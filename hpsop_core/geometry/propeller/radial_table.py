@@ -119,6 +119,11 @@ class RadialTable:
         return BladeSections(radius_ratio=radius, **columns)
 
     @cached_property
+    def at_07R(self) -> BladeSections:
+        """The section at 0.7 R, which stands for the blade in so many formulas; each number an array of shape ()."""
+        return self.at(np.array(0.7))
+
+    @cached_property
     def expanded_area_ratio_per_blade(self) -> float:
         """Expanded blade area ratio of one blade, (2/pi) int c/D d(r/R); multiply by the number of blades."""
         # Gauss-Legendre between the rows, in the variable in which the chord is a cubic: exact up to rounding.

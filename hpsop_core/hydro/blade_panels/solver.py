@@ -80,7 +80,7 @@ def solve(
         SolverFailure: the panels cannot represent the geometry, or a condition does not converge (it names the J).
     """
     settings = BladePanelSettings() if settings is None else settings
-    chord_07 = float(propeller.table.at(np.array(0.7)).chord_ratio)
+    chord_07 = float(propeller.table.at_07R.chord_ratio)
     camber = settings.camber_effectiveness * drag.camber_gain(propeller.diameter, chord_07)
     settings = replace(settings, camber_effectiveness=camber)
     advance = np.atleast_1d(np.asarray(advance_coefficients, dtype=np.float64))

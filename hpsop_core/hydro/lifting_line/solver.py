@@ -349,6 +349,6 @@ def solve(
         InputError: a J is negative or not finite.
         SolverFailure: no solution; the reason names J.
     """
-    chord_07 = float(propeller.table.at(np.array(0.7)).chord_ratio)
+    chord_07 = float(propeller.table.at_07R.chord_ratio)
     camber = settings.camber_effectiveness * drag.camber_gain(propeller.diameter, chord_07)
     return prepare(propeller, replace(settings, camber_effectiveness=camber)).solve(advance_coefficients, drag)
