@@ -347,7 +347,8 @@ class OptimizationSection:
     )
     surface: bool = flag(
         False,
-        "level 2 answers from a surface learnt from solved designs, where it is not in doubt; the last front is solved",
+        "level 2 answers from a surface learnt from solved designs, where it is not in doubt, and level 1's propellers "
+        "come from a table; the last front is solved",
     )
     surface_sample: int = integer(
         30, 0, 1000, "designs spread over the space that are solved for the surface when level 2 begins"

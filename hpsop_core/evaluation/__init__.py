@@ -5,8 +5,8 @@ The rooms, from the ground up: ``result`` (what an evaluation is), ``levels`` (t
 ``hull_propulsion`` (allowances, wake, thrust deduction and eta_R as the case wants them), ``shapes`` (hull and
 propeller of a design, V0), ``ship`` (weights, stability, engine, EEDI), ``condition`` (one operating condition),
 ``gaussian_process``, ``surface`` and ``learnt_back`` (what a learnt surface answers for the solvers),
-``wave_correction`` (level 1 taught by level 2), ``shipped_calibration`` (what level 1 takes from level 2 in the
-shipped cases, kept as files), ``physics`` (every number of a design, not normalised), ``reference`` (the initial
+``propeller_tables`` (level 1's propellers of a search), ``wave_correction`` (level 1 taught by level 2),
+``shipped_calibration`` (what level 1 takes from level 2 in the shipped cases, kept as files), ``physics`` (every number of a design, not normalised), ``reference`` (the initial
 design's, which normalise), ``solvable`` (which levels a new case can be solved at), ``curves`` and ``power_curves``
 (what is drawn beyond an evaluation), ``coverage`` (what "feasible" covers), ``evaluate``, which puts them together
 with the objectives and constraints that ``case`` declares, ``first_start`` (kernels compiled once), ``input_widths``

@@ -60,7 +60,7 @@ def evaluate(
         basis = reference_for(case, level) if reference is None else reference
         if basis.level != level:
             raise ValueError(f"a reference of level {basis.level} cannot normalise level {level}")
-        physics = compute(case, design, level, basis.basis, basis.surface)
+        physics = compute(case, design, level, basis.basis, basis.surface, basis.propellers)
         result = assessed(case, physics, basis, objectives, constraints)
         return replace(result, elapsed=time.perf_counter() - started)
     except SolverFailure as failure:
@@ -112,6 +112,7 @@ def assessed(
         carbon_dioxide_per_hour=None if fuel is None else case.engine.fuel_carbon_factor * fuel,
         attained_eedi_g_per_tonne_mile=profile_eedi(case, design),
         predicted=physics.predicted,
+        propeller_tabulated=physics.propeller_tabulated,
     )
 
 

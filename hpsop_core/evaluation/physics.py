@@ -43,6 +43,7 @@ from hpsop_core.evaluation.propeller_answer import (
     propeller_answer,
     propeller_variables,
 )
+from hpsop_core.evaluation.propeller_tables import PropellerTables
 from hpsop_core.evaluation.shapes import initial_volume
 from hpsop_core.evaluation.ship import Loading, loading
 from hpsop_core.evaluation.surface import Surface
@@ -150,16 +151,23 @@ class Physics:
         curve: the propeller's open-water curve.
         warnings: of the form and of the solvers.
         predicted: a learnt surface spoke for the solvers.
+        propeller_tabulated: the open-water curve comes from a search's table, see ``propeller_tables``.
     """
 
     numbers: DesignNumbers
     curve: PropellerCurve
     warnings: tuple[str, ...]
     predicted: bool = False
+    propeller_tabulated: bool = False
 
 
 def compute(
-    case: Case, variables: DesignVariables, level: int, basis: Basis, surface: Surface | None = None
+    case: Case,
+    variables: DesignVariables,
+    level: int,
+    basis: Basis,
+    surface: Surface | None = None,
+    propellers: PropellerTables | None = None,
 ) -> Physics:
     """A design's physics at a level.
 
@@ -167,6 +175,7 @@ def compute(
         case, variables, level: what is asked.
         basis: the case's at this level.
         surface: asked before the solvers; they decide where it is in doubt, and where it says that the design fails.
+        propellers: at level 1, asked before the lifting line.
 
     Raises:
         SolverFailure: the form, the propeller or a solver's answer is not to be had.
@@ -189,8 +198,10 @@ def compute(
             # Near to the limit it is the pressures themselves that decide.
             answer = propeller_answer(propeller_key, level, blade_drag(case.constants))
             return assembled(waves, answer, predicted=True)
-    answer = propeller_answer(propeller_key, level, blade_drag(case.constants))
-    return assembled(wave_answers(hull_key, level, froude_numbers), answer)
+    tabulated = None if propellers is None else propellers.answer(propeller_key)
+    answer = tabulated or propeller_answer(propeller_key, level, blade_drag(case.constants))
+    physics = assembled(wave_answers(hull_key, level, froude_numbers), answer)
+    return replace(physics, propeller_tabulated=tabulated is not None)
 
 
 @dataclass(frozen=True)

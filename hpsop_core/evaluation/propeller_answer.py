@@ -87,6 +87,11 @@ def build_propeller(variables: PropellerVariables) -> Propeller:
     )
 
 
+def curve_nodes() -> Array:
+    """The advance coefficients at which the solvers are asked, ascending; (``NODE_COUNT``,)."""
+    return chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
+
+
 @dataclass(frozen=True, eq=False)
 class PropellerAnswer:
     """What is remembered of a propeller at a level.
@@ -120,7 +125,7 @@ def propeller_answer(variables: PropellerVariables, level: int, drag: SectionDra
     Raises:
         SolverFailure: the solver does not converge; names the J.
     """
-    nodes = chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
+    nodes = curve_nodes()
     solution = level_of(level).solve_propeller(build_propeller(variables), nodes, drag)
     result = solution.open_water
     pressures = solution.pressures() if solution.pressures else None
@@ -136,7 +141,7 @@ def finer_propeller_answer(variables: PropellerVariables, drag: SectionDrag) -> 
     """
     if TRUTH.solve_finer_propeller is None:
         raise SolverFailure("propeller", "the true level has no finer panels")
-    nodes = chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
+    nodes = curve_nodes()
     result = TRUTH.solve_finer_propeller(build_propeller(variables), nodes, drag).open_water
     return PropellerAnswer(PropellerCurve(nodes, result.thrust_coefficient, result.torque_coefficient), None)
 

@@ -9,7 +9,9 @@ from typing import Any
 from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import ConditionResult, DesignNumbers, InitialNumbers
 from hpsop_core.evaluation.hull_propulsion import HoltropNumbers
+from hpsop_core.evaluation.levels import FAST
 from hpsop_core.evaluation.physics import Basis, basis_for, compute
+from hpsop_core.evaluation.propeller_tables import PropellerTables, tables_for
 from hpsop_core.evaluation.shapes import design_hull
 from hpsop_core.evaluation.ship import check_engine, check_loading
 from hpsop_core.evaluation.surface import Surface, learn
@@ -26,12 +28,14 @@ class Reference:
         basis: what every design's physics takes from the initial design.
         initial: the initial design's numbers.
         surface: what has been learnt, to be asked before the solvers; never part of ``as_dict``.
+        propellers: likewise at level 1, to be asked before the lifting line.
     """
 
     level: int
     basis: Basis
     initial: InitialNumbers
     surface: Surface | None = None
+    propellers: PropellerTables | None = None
 
     def as_dict(self) -> dict[str, Any]:
         """For the run file."""
@@ -86,6 +90,11 @@ def reference_for(case: Case, level: int) -> Reference:
     numbers = compute(case, case.initial.variables, level, basis).numbers
     check_engine(case, numbers)
     return Reference(level, basis, initial_numbers(basis.displaced_volume, numbers))
+
+
+def searching(case: Case, reference: Reference) -> Reference:
+    """A reference as a search uses it: at level 1 with tables of the propellers, where they are worth making."""
+    return replace(reference, propellers=tables_for(case)) if reference.level == FAST.number else reference
 
 
 def learnt(

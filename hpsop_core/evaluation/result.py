@@ -52,6 +52,7 @@ class Ok:
             (``evaluation.stated_errors``); "" where there are none.
         elapsed: wall time in s; the only field that differs from run to run.
         predicted: waves and open-water curve are a learnt surface's (``evaluation.surface``), not the solvers'.
+        propeller_tabulated: the open-water curve comes from a search's table (``evaluation.propeller_tables``).
     """
 
     ok: ClassVar[Literal[True]] = True
@@ -81,6 +82,7 @@ class Ok:
     errors_source: str = ""
     elapsed: float = 0.0
     predicted: bool = False
+    propeller_tabulated: bool = False
 
     def as_dict(self) -> dict[str, Any]:
         """The JSON document of ``hpsop evaluate --json``."""
@@ -111,6 +113,7 @@ class Ok:
             "elapsed": self.elapsed,
             "stage": self.stage,
             "predicted": self.predicted,
+            "propeller_tabulated": self.propeller_tabulated,
         }
 
 
@@ -148,6 +151,7 @@ class Failed:
     conditions: ClassVar[tuple[ConditionResult, ...]] = ()
     warnings: ClassVar[tuple[str, ...]] = ()
     predicted: ClassVar[bool] = False
+    propeller_tabulated: ClassVar[bool] = False
     objectives: ClassVar[Mapping[str, float | None]] = {"f1": None, "f2": None}
     all_objectives: ClassVar[Mapping[str, float]] = {}
     constraints: ClassVar[Mapping[str, float | None]] = {constraint.name: None for constraint in CONSTRAINTS}
@@ -193,6 +197,7 @@ class Failed:
             "elapsed": self.elapsed,
             "stage": self.stage,
             "predicted": self.predicted,
+            "propeller_tabulated": self.propeller_tabulated,
         }
 
 
@@ -232,6 +237,7 @@ def evaluation_from_dict(data: Mapping[str, Any], bounds: DesignSpace | None = N
         errors_source=data.get("errors_source", ""),
         elapsed=data.get("elapsed", 0.0),
         predicted=data.get("predicted", False),
+        propeller_tabulated=data.get("propeller_tabulated", False),
     )
 
 

@@ -30,10 +30,11 @@ from hpsop_core.evaluation.propeller_answer import (
     NODE_COUNT,
     PropellerAnswer,
     PropellerVariables,
+    curve_nodes,
     propeller_variables,
 )
 from hpsop_core.geometry.hull.hull import Hull
-from hpsop_core.hydro.operating_point import PropellerCurve, chebyshev_nodes
+from hpsop_core.hydro.operating_point import PropellerCurve
 from hpsop_core.typing_aliases import Array
 
 WAVE_DOUBT = 0.005
@@ -119,7 +120,7 @@ class Surface:
                 return None
             answers.append(WaveAnswer(math.exp(float(logarithm[0]))))
         thrust, torque = np.split(curve, 2)
-        return tuple(answers), PropellerAnswer(PropellerCurve(_nodes(), thrust, torque), None)
+        return tuple(answers), PropellerAnswer(PropellerCurve(curve_nodes(), thrust, torque), None)
 
     def back_told(
         self, case: Case, variables: DesignVariables, conditions: Sequence[ConditionResult]
@@ -189,14 +190,10 @@ def _size(errors: Array) -> tuple[float, float]:
 
 
 def _efficiency_errors(errors: Array, curves: Array) -> Array:
-    nodes = _nodes()
+    nodes = curve_nodes()
     working = np.flatnonzero((nodes >= _WORKING_RANGE[0]) & (nodes <= _WORKING_RANGE[1]))
     relative = errors / curves
     return np.asarray(relative[:, working] - relative[:, NODE_COUNT + working])
-
-
-def _nodes() -> Array:
-    return chebyshev_nodes(*ADVANCE_RANGE, NODE_COUNT)
 
 
 def _proportions(length: float, breadth: float, draft: float, block: float, centre: float) -> list[float]:
@@ -240,4 +237,4 @@ def _node_values(curves: Mapping[str, Sequence[float]]) -> Array:
     advance = scaled(np.array(curves["advance_coefficient"]))
     values = np.array([curves["thrust_coefficient"], curves["torque_coefficient"]]).T
     series: Array = np.linalg.lstsq(chebyshev.chebvander(advance, NODE_COUNT - 1), values, rcond=None)[0]
-    return np.concatenate(chebyshev.chebval(scaled(_nodes()), series))
+    return np.concatenate(chebyshev.chebval(scaled(curve_nodes()), series))

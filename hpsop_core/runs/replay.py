@@ -12,6 +12,7 @@ import dataclasses
 import json
 import time
 from collections.abc import Callable, Mapping, Sequence
+from functools import cached_property
 from typing import Any, TypeVar
 
 from hpsop_core.errors import HpsopError, InputError
@@ -390,9 +391,17 @@ class RunDriver:
     def _reference_of(self, candidate: Candidate) -> Any:
         """What a design is evaluated with: with a surface, what that has learnt too."""
         plain = self._reference(candidate.level)
-        if not candidate.surface:
-            return plain
-        return self._learning.reference(candidate.surface, plain, self._keep)
+        if candidate.surface:
+            return self._learning.reference(candidate.surface, plain, self._keep)
+        if candidate.level == FAST.number and candidate.origin != "initial":
+            return self._searching
+        return plain
+
+    @cached_property
+    def _searching(self) -> Any:
+        """Level 1's reference for the designs of the search; the initial one, which normalises all, is solved."""
+        plain, searching = self._reference(FAST.number), self._physics.searching
+        return plain if searching is None else searching(self._case, plain)
 
     def _reference(self, level: int) -> Any:
         if level not in self._references:

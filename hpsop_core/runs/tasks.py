@@ -53,6 +53,7 @@ class Physics:
         warm_up: called once in each new worker and level, before evaluations are timed; None if there is no need.
         learn: called by the run itself with solved designs of level 2; None if nothing can be learnt.
         refine: as ``evaluate`` at level 2, with the numbers' errors; None if they cannot be had.
+        searching: level 1's reference as designs of a search are evaluated with it; None if it is the same.
     """
 
     evaluate: EvaluateFunction
@@ -61,15 +62,16 @@ class Physics:
     warm_up: WarmUpFunction | None = None
     learn: LearnFunction | None = None
     refine: EvaluateFunction | None = None
+    searching: Callable[[Case, Any], Any] | None = None
 
 
 def hydrodynamics() -> Physics:
     """The real thing."""
     # Imported here: this module is also the workers' first import, and tests bring their own physics.
     from hpsop_core.evaluation.evaluate import evaluate
-    from hpsop_core.evaluation.reference import Reference, learnt, reference_for
+    from hpsop_core.evaluation.reference import Reference, learnt, reference_for, searching
 
-    return Physics(evaluate, reference_for, Reference.from_dict, _evaluate_initial, learnt, _evaluate_with_errors)
+    return Physics(evaluate, reference_for, Reference.from_dict, _make_ready, learnt, _evaluate_with_errors, searching)
 
 
 def _evaluate_with_errors(case: Case, variables: DesignVariables, level: int, reference: Any) -> Evaluation:
@@ -78,7 +80,7 @@ def _evaluate_with_errors(case: Case, variables: DesignVariables, level: int, re
     return evaluate_with_errors(case, variables, level, reference)
 
 
-def _evaluate_initial(case: Case, level: int, reference: Any) -> None:
+def _make_ready(case: Case, level: int, reference: Any) -> None:
     from hpsop_core.evaluation.evaluate import evaluate
 
     # Also where a surface would answer: the solvers are to be made ready.
