@@ -12,9 +12,10 @@ from hpsop_core.case.sections import (
     ConstraintsSection,
     HullSection,
     InitialSection,
+    OptimizationSection,
     PropellerSection,
 )
-from hpsop_core.case.variables import DesignSpace
+from hpsop_core.case.variables import VARIABLE_NAMES, DesignSpace
 from hpsop_core.geometry.hull.hull import ParentHull
 from hpsop_core.geometry.hull.input import HullFile, ReadOptions
 from hpsop_core.geometry.propeller.propeller import load_propeller, propeller_family
@@ -132,6 +133,8 @@ def ready_case(
         bounds=DesignSpace.from_bounds(space),
         conditions=ConditionsSection(froude_numbers=speeds, weights=(0.65, 0.35)),
         constraints=limits,
+        # One gene of each design, on average: fronts of several seeds then end closer together.
+        optimization=OptimizationSection(mutation_probability=round(1.0 / len(VARIABLE_NAMES), 2)),
     )
 
 
