@@ -169,6 +169,9 @@ def _solved(tables: PropellerTables, blade_count: int, place: tuple[float, ...])
     Raises:
         SolverFailure: this propeller cannot be computed.
     """
-    propeller = replace(tables.parent, blade_count=blade_count, **dict(zip(_VARIED, place, strict=True)))
+    pitch, area, diameter = place  # as in _VARIED
+    propeller = replace(
+        tables.parent, blade_count=blade_count, pitch_ratio=pitch, expanded_area_ratio=area, diameter=diameter
+    )
     curve = propeller_answer(propeller, FAST.number, tables.drag).curve
     return np.concatenate([curve.thrust_coefficient, curve.torque_coefficient])
