@@ -17,7 +17,7 @@ from typing import TypeAlias
 import numpy as np
 
 from hpsop_core.case.case import Case
-from hpsop_core.errors import SolverFailure
+from hpsop_core.errors import HpsopError
 from hpsop_core.evaluation.levels import FAST
 from hpsop_core.evaluation.propeller_answer import (
     NODE_COUNT,
@@ -143,7 +143,8 @@ def _table(tables: PropellerTables, blade_count: int) -> _Table | None:
             off = np.array([table.values(place) for place in tested]) - exact
             if float(np.max(np.abs(off) / scale)) <= TOLERANCE:
                 return table
-    except SolverFailure:
+    except HpsopError:
+        # A corner of the bounds that the family or the lifting line does not reach; the designs say so themselves.
         pass
     return None
 
@@ -167,7 +168,7 @@ def _solved(tables: PropellerTables, blade_count: int, place: tuple[float, ...])
     """KT, then KQ, at the curve's nodes, by the lifting line; (2 nodes,).
 
     Raises:
-        SolverFailure: this propeller cannot be computed.
+        HpsopError: this propeller cannot be computed.
     """
     pitch, area, diameter = place  # as in _VARIED
     propeller = replace(

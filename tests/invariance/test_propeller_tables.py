@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from hpsop_core.case.case import Case, load_case
-from hpsop_core.errors import SolverFailure
+from hpsop_core.errors import InputError
 from hpsop_core.evaluation import propeller_tables
 from hpsop_core.evaluation.evaluate import evaluate
 from hpsop_core.evaluation.propeller_answer import PropellerAnswer, propeller_answer, propeller_variables
@@ -68,7 +68,7 @@ def test_who_searches_little_or_at_level_1_alone_solves(case: Case) -> None:
 def wavy(tables: PropellerTables, blade_count: int, place: tuple[float, ...]) -> Any:
     """A family whose thrust no polynomial of these degrees follows; it cannot be computed for 6 blades."""
     if blade_count == 6:
-        raise SolverFailure("lifting_line", "no")
+        raise InputError("no such propeller")
     return np.concatenate([np.full(7, 0.3 + 0.01 * np.sin(90.0 * place[0] * (blade_count == 4))), np.full(7, 0.03)])
 
 
