@@ -40,6 +40,8 @@ class WhatIfView:
         self._steps = Slot(gui)
         # by the variables that name a design: a stand-in takes over what belongs to the one in whose place it is
         self._sliders: dict[str, Any] = {}
+        # what a slider was put at to show a design, in digits that can be read, and the design's own number
+        self._exact: dict[str, tuple[float, float]] = {}
         self._space = session.picture.case.bounds
         self._initial = session.picture.case.initial.variables
         for place, (key, value) in zip(VARIABLE_NAMES, self._space.values(self._initial).items(), strict=True):
@@ -63,13 +65,15 @@ class WhatIfView:
 
     def _variables(self) -> DesignVariables:
         values: list[float] = []
-        for key, slider in zip(self._space.names, self._sliders.values(), strict=True):
+        for key, (place, slider) in zip(self._space.names, self._sliders.items(), strict=True):
             value = slider.value
             if isinstance(value, bool) or not isinstance(value, int | float) or not math.isfinite(value):
                 raise InputError(f"what-if: {key} is not a finite number; move its slider")
             # A browser may send anything; the slider's own range is the limit.
             clamped = min(max(value, slider.min), slider.max)
-            values.append(SEARCH_TABLE[key].typed(clamped))
+            displayed, exact = self._exact.get(place, (math.nan, math.nan))
+            # a design does not change by being shown
+            values.append(SEARCH_TABLE[key].typed(exact if clamped == displayed else clamped))
         return DesignVariables.from_dict(self._space.design(values).as_dict(), "what-if")
 
     def _reach(self) -> None:
@@ -93,8 +97,11 @@ class WhatIfView:
         if shown is not self._own:
             self._reach()
             values = self._space.values(shown.evaluation.variables)
-            for slider, (key, number) in zip(self._sliders.values(), values.items(), strict=True):
-                value = SEARCH_TABLE[key].typed(number)
+            initial = self._space.values(self._initial)
+            for (place, slider), (key, number) in zip(self._sliders.items(), values.items(), strict=True):
+                variable = SEARCH_TABLE[key]
+                value = variable.typed(round(number, slider_decimals(variable, initial[key])))
+                self._exact[place] = (value, number)
                 if value < slider.min:
                     slider.min = value
                 if value > slider.max:

@@ -187,14 +187,27 @@ def test_a_what_if_slider_moves_what_the_case_searches() -> None:
     view = WhatIfView(session, Mock(), Mock(add_slider=_slider))
     fullness, length = view._sliders["displacement_ratio"], view._sliders["length_to_breadth"]
     assert (fullness.label, fullness.value) == ("CB/CB₀", 1.0)
-    length.value, fullness.value = 1.04 * length.value, 1.02
+    length.value, fullness.value = 1.04 * case.initial.variables.length_to_breadth, 1.02
     moved = view._variables()
     assert moved.displacement_ratio == pytest.approx(1.04 * 1.02)
     assert moved.block_coefficient_ratio(case.initial.variables) == pytest.approx(1.02)
     # another run is opened that searches the displacement: the slider is that one's again
     session.picture.case, session.selected = CASE, Shown("whatif", evaluate(CASE, moved))
     view._follow()
-    assert (fullness.label, fullness.value) == ("∇/∇₀ ↑", moved.displacement_ratio)
+    assert (fullness.label, fullness.value) == ("∇/∇₀ ↑", 1.061)
+
+
+def test_a_what_if_slider_shows_digits_that_mean_something_and_keeps_the_design_s_own_number() -> None:
+    own = dataclasses.replace(CASE.initial.variables, pitch_ratio=0.9999999, draft=14.123456789)
+    evaluation = evaluate(CASE, own)
+    assert evaluation.ok
+    session = Mock(selected=Shown("whatif", evaluation))
+    session.picture.case = CASE
+    view = WhatIfView(session, Mock(), Mock(add_slider=_slider))
+    assert (view._sliders["pitch_ratio"].value, view._sliders["draft"].value) == (1.0, 14.12)
+    assert view._variables() == own
+    view._sliders["draft"].value = 14.2
+    assert view._variables() == dataclasses.replace(own, draft=14.2)
 
 
 def test_a_failed_design_stands_on_nothing() -> None:
