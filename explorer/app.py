@@ -38,12 +38,13 @@ from explorer.state.draft import Draft
 from explorer.state.hub import Hub
 from explorer.state.run_picture import RunPicture
 from explorer.state.session import Session
+from explorer.views.scene_view import prepare_scene
 from hpsop_core.assets import asset_path
 from hpsop_core.case.case import DEFAULT_CASE, Case, load_case
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.runs.reader import open_run
 
-_IMPORT_SECONDS = 4.0
+_IMPORT_SECONDS = 9.0
 # an evaluation under way is waited for, 3 s at most, and workers that still import
 _CLOSING_SECONDS = 40.0
 
@@ -62,6 +63,7 @@ class Explorer:
         origins: Origins of pages that may drive this one beside its own (``origin_of``).
         run_asked: whether a person asked for that run; where not, the demonstration stands in for one that is damaged.
         hull: a hull file to bring in: its name for people, and its bytes.
+        announce: called with this as soon as a browser can be sent to ``address``; all else is made meanwhile.
 
     Attributes:
         address: what opens the page, with its token.
@@ -84,7 +86,9 @@ class Explorer:
         origins: Sequence[str] = (),
         run_asked: bool = True,
         hull: tuple[str, bytes] | None = None,
+        announce: Callable[[Explorer], None] = lambda explorer: None,
     ) -> None:
+        self._gone = threading.Event()
         self.folder = folder or runs_folder()[0]
         token = token_of(self.folder)
         self.address = address_of(host, port, token)
@@ -98,25 +102,29 @@ class Explorer:
         browsers = remembered(self.folder).browsers
         self.state = AppState(draft, worker, Hub(worker), RunPicture("", case), memory=browsers)
         self.services = open_services(self.state, RunLibrary(self.folder, demonstration()), workers)
+        self.services.runs.await_browser()
         self.trouble = ""
-        if run is not None:
+        if run is not None and run_asked:
             self._open(run, read_only, run_asked)
         if hull is not None:
             self.services.ships.bring_hull(*hull)
         notices = Notices()
         self.access = Access(token, origins, notices)
         self.server = secure_server(host, port, "hpsop", self.access)
+        # nothing can be refused any more, and a browser takes seconds to load the page
+        announce(self)
+        if run is not None and not run_asked:
+            self._open(run, read_only, run_asked)
         self.quiet = quiet(self.server._event_loop, notices)
         self.state.hub.on(("draft",), self.services.runs.draft_changed)
         self.state.on_remember = lambda: worker.latest("memory", self._save_memory)
         # the run on display and the settings come back too
         self.state.hub.on(("draft", "library"), self._save_memory)
-        self._gone = threading.Event()
         self.settings = build_shared(self.state, self.services, self.server)
         self._visitors = Visitors(self.server, self._visited)
         # the run that was on display before may have been a large one
         self.state.hub.on(("library",), self._visitors.tidy_soon)
-        # The initial design stands ready when the first browser asks.
+        # What is seen first stands ready when the first browser asks.
         worker.latest("initial", self._warm_up)
         # The search's imports hold the interpreter for a second: not while the page loads, nor when Start is pressed.
         early = threading.Timer(_IMPORT_SECONDS, importlib.import_module, ("hpsop_core.runs.replay",))
@@ -138,6 +146,7 @@ class Explorer:
     def _warm_up(self) -> None:
         try:
             self.services.designs.first()
+            prepare_scene(self.services.designs)
         except HpsopError as error:
             logging.getLogger("hpsop.explorer").error("the initial design cannot be computed: %s", error)
 
@@ -265,34 +274,55 @@ def _arguments(argv: Sequence[str] | None) -> argparse.Namespace:
 def main(argv: Sequence[str] | None = None) -> int:
     """The command; returns the exit status."""
     logging.basicConfig(level=logging.WARNING, format="%(levelname)s: %(message)s")
-    try:
-        arguments = _arguments(argv)
-        if arguments.workers is not None and arguments.workers < 1:
-            raise InputError(f"--workers {arguments.workers}: give 1 or more")
-        origins = [origin_of(text) for text in arguments.allow_origin]
-        folder, homeless = runs_folder()
-        opening = _chosen(arguments.what, folder)
-        port = free_port(arguments.host, arguments.port)
-        explorer = Explorer(
-            opening.case,
-            opening.run,
-            opening.read_only,
-            arguments.host,
-            port,
-            folder,
-            arguments.workers,
-            opening.restored,
-            origins,
-            run_asked=bool(arguments.what),
-            hull=opening.hull,
-        )
-    except HpsopError as error:
-        sys.stderr.write(f"{error}\n")
-        return 2
+    with contextlib.ExitStack() as doors:
+        try:
+            arguments = _arguments(argv)
+            if arguments.workers is not None and arguments.workers < 1:
+                raise InputError(f"--workers {arguments.workers}: give 1 or more")
+            origins = [origin_of(text) for text in arguments.allow_origin]
+            folder, homeless = runs_folder()
+            opening = _chosen(arguments.what, folder)
+            port = free_port(arguments.host, arguments.port)
+            explorer = Explorer(
+                opening.case,
+                opening.run,
+                opening.read_only,
+                arguments.host,
+                port,
+                folder,
+                arguments.workers,
+                opening.restored,
+                origins,
+                run_asked=bool(arguments.what),
+                hull=opening.hull,
+                announce=lambda page: _announce(page, arguments, port, homeless, doors),
+            )
+        except HpsopError as error:
+            sys.stderr.write(f"{error}\n")
+            return 2
+        if explorer.trouble:
+            sys.stderr.write(f"{explorer.trouble}\nthe demonstration is shown instead\n")
+        try:
+            explorer.wait()
+        finally:
+            # who presses Ctrl-C again does not want to wait
+            signal.signal(signal.SIGINT, lambda *_: _end_now())
+            late = threading.Timer(_CLOSING_SECONDS, _end_now)
+            late.daemon = True
+            late.start()
+            try:
+                explorer.close()
+            finally:
+                late.cancel()
+    return 0
+
+
+def _announce(
+    explorer: Explorer, arguments: argparse.Namespace, port: int, homeless: str, doors: contextlib.ExitStack
+) -> None:
+    """Say where the page is, send a browser there, and end it from now on when the terminal says so."""
     if homeless:
         sys.stderr.write(f"{homeless}\n")
-    if explorer.trouble:
-        sys.stderr.write(f"{explorer.trouble}\nthe demonstration is shown instead\n")
     if port != arguments.port:
         sys.stderr.write(f"port {arguments.port} is busy; using {port}\n")
     if arguments.host not in ("127.0.0.1", "localhost", "::1"):
@@ -300,31 +330,23 @@ def main(argv: Sequence[str] | None = None) -> int:
             "others on the network can drive the page if they learn its token, which travels unencrypted: "
             "a tunnel (ssh -L) is safer\n"
         )
-    sys.stdout.write(f"hpsop explorer: {explorer.address}   (Ctrl-C ends it)\n")
-    sys.stdout.flush()
     # not as an exception, which something that runs in between may swallow
     for ending in (signal.SIGINT, signal.SIGTERM):
         signal.signal(ending, lambda *_: explorer._gone.set())
     # The terminal was closed; with nohup it is ignored, and stays so.
     if signal.getsignal(signal.SIGHUP) is not signal.SIG_IGN:
         signal.signal(signal.SIGHUP, lambda *_: explorer._gone.set())
-    try:
-        with contextlib.nullcontext() if arguments.no_browser else door(folder, explorer.address) as entrance:
-            if entrance is not None:
-                with contextlib.suppress(webbrowser.Error):
-                    webbrowser.open(entrance)
-            explorer.wait()
-    finally:
-        # who presses Ctrl-C again does not want to wait
-        signal.signal(signal.SIGINT, lambda *_: _end_now())
-        late = threading.Timer(_CLOSING_SECONDS, _end_now)
-        late.daemon = True
-        late.start()
-        try:
-            explorer.close()
-        finally:
-            late.cancel()
-    return 0
+    sys.stdout.write(f"hpsop explorer: {explorer.address}   (Ctrl-C ends it)\n")
+    sys.stdout.flush()
+    if not arguments.no_browser:
+        entrance = doors.enter_context(door(explorer.folder, explorer.address))
+        # one of the terminal's own returns when it is left
+        threading.Thread(target=_send_browser, args=(entrance,), name="browser", daemon=True).start()
+
+
+def _send_browser(entrance: str) -> None:
+    with contextlib.suppress(webbrowser.Error):
+        webbrowser.open(entrance)
 
 
 def _end_now() -> None:

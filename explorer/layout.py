@@ -138,10 +138,12 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
             WhatIfView(session, services, gui)
         with tabs["Your ship"]:
             ShipView(session, services.ships, services.runs, gui)
-    ScreenshotView(session, SceneView(session, designs, client), client)
+    scene = SceneView(session, designs, client)
+    ScreenshotView(session, scene, client)
     OverlayView(session, designs, client)
 
     def hello(event: PageEvent) -> None:
+        services.runs.browser_came()
         session.resize(event.numbers.get("width"), event.numbers.get("height"))
         top.set_width(session.dock_width)
         if session.narrow:
@@ -177,6 +179,7 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
         )
 
     session.gestures.on("hello", "", hello)
+    session.gestures.on("stands", "", lambda event: scene.begin())
 
     def size(event: PageEvent) -> None:
         before, narrow = session.dock_width, session.narrow

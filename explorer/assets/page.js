@@ -112,9 +112,24 @@
     if (location.search) history.replaceState(null, "", location.pathname);
     place();
     title();
+    stand();
     // panels mount one after another
     [100, 500, 1500].forEach((delay) => setTimeout(restoreTabs, delay));
   };
+
+  // The 3D view was a dot until now (page.css). Once it has its size the ship may come: a change of size waits for whatever
+  // the graphics are at.
+  function stand() {
+    document.documentElement.classList.add("hpsop-stands");
+    const since = performance.now();
+    const wait = setInterval(() => {
+      const canvas = document.querySelector("canvas[data-engine]");
+      if ((!canvas || canvas.width < 100) && performance.now() - since < 5000) return;
+      clearInterval(wait);
+      H.send({ t: "stands" });
+    }, 40);
+    disposers.push(() => clearInterval(wait));
+  }
 
   // ---- which tab of a panel was open: viser forgets it when the server starts anew --------------------------------
   const listsOfTabs = () => Array.from(document.querySelectorAll("[role=tablist]"), (list) => {

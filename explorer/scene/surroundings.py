@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -25,6 +26,7 @@ _SKY = {
 }
 
 
+@cache
 def calm_water(dark: bool) -> bytes:
     """A sheet from -1 to 1 at z = 0, rippled, whose opacity falls to nothing at its rim: a sea has no edge.
 
@@ -68,6 +70,7 @@ def _ripples(place: NDArray[np.float64]) -> NDArray[np.float64]:
     return np.asarray(np.round(slope * 0.5 * _SHADES) / (0.5 * _SHADES))
 
 
+@cache
 def sky(dark: bool) -> bytes:
     """A sphere of radius 1 with the sky on its inside, lit by itself, as a GLB file."""
     sphere = trimesh.creation.uv_sphere(radius=1.0, count=(24, 24))

@@ -31,6 +31,8 @@ from hpsop_core.markup import fill
 
 _SCRIPT, _FRAMES, _STYLE = "hpsop-access.js", "hpsop-frames.js", "hpsop-page.css"
 _YEAR = 365 * 24 * 3600
+# most of the page is packed inside already: a browser would wait for nothing
+_FAST = 1
 _HOST = re.compile(r"(?:[A-Za-z0-9._-]{1,253}|\[[0-9A-Fa-f:.]{2,45}\])(?::[0-9]{1,5})?")
 _ORIGIN = re.compile(rf"(https?)://({_HOST.pattern})")
 # viser's client obeys these in an address: a link could make our page talk to another server, or play its recording
@@ -183,7 +185,7 @@ class Access:
                 f'<link rel="stylesheet" href="{_STYLE}">'
             )
             plain = plain.replace(b"<head>", ours.encode(), 1).replace(b"<title>Viser<", b"<title>hpsop<", 1)
-            self._page[zipped] = gzip.compress(plain) if zipped else plain
+            self._page[zipped] = gzip.compress(plain, _FAST) if zipped else plain
         response.body = self._page[zipped]
         del response.headers["Content-Length"]
         response.headers["Content-Length"] = str(len(response.body))

@@ -38,7 +38,7 @@ class PageEvent:
     """One gesture.
 
     Attributes:
-        kind: hello, size, click, hover, pan, zoom, box, brush, reset, act or key.
+        kind: hello, stands, size, click, hover, pan, zoom, box, brush, reset, act or key.
         chart: the chart it happened on, or "".
         name, arg: of a pressed button (kind "act").
         key: of the keyboard.

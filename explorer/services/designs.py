@@ -192,9 +192,14 @@ class Designs:
         key = (case.hull, case.propeller, case.initial, variables.key(), near)
         return self._geometry.get(key, lambda: scene_geometry(case, variables, near))
 
-    def ghost(self, variables: DesignVariables) -> NDArray[np.float64]:
-        """A hull as a lines drawing in space: (n, 2, 3) segments of its sections and its waterline, both sides."""
-        lines, geometry = self.lines(variables), self.geometry(variables)
+    def ghost(self, variables: DesignVariables, near: bool = True) -> NDArray[np.float64]:
+        """A hull as a lines drawing in space: (n, 2, 3) segments of its sections and its waterline, both sides.
+
+        Args:
+            variables: of the design.
+            near: which of its meshes are at hand; the lines are the same.
+        """
+        lines, geometry = self.lines(variables), self.geometry(variables, near)
         return ghost_segments(lines, geometry.waterline)
 
     def waves(self, evaluation: Evaluation, index: int) -> WaveField:

@@ -286,6 +286,9 @@ class RunKeeper:
         return self._controller
 
     def _ensure_reader(self) -> RunReader | None:
+        # without the guard, which a picture of a large run holds for seconds: a click must not wait for it
+        if self._reader is not None:
+            return self._reader
         with self._guard:
             if self._reader is None and self.path.is_file() and self.path.stat().st_size > 0:
                 try:

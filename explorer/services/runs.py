@@ -21,6 +21,8 @@ from hpsop_core.runs.executor import default_workers
 # between two pictures of a run: what eyes need; and on a busy machine a rest of so many times what it took to make and
 # draw the last one, in which a press is answered at once; drawing is waited for so long at most
 _PICTURE_SECONDS, _PICTURE_REST, _DRAWN_SECONDS = 0.25, 3.0, 1.0
+# after a browser has said hello its page is put up for so long; who lets no browser come has waited long enough then
+_PUT_UP_SECONDS, _NOBODY_SECONDS = 1.5, 10.0
 
 
 class Runs:
@@ -43,6 +45,26 @@ class Runs:
         self._pictures = LatestWorker("pictures")
         self._rested = 0.0
         self._standing: tuple[object, ...] = ()
+        self._quiet_until = 0.0
+        self._awaited = threading.Event()
+
+    def await_browser(self) -> None:
+        """A browser is about to come: news of the run wait until its page stands, or until nobody has come.
+
+        What makes a large run's second picture would take one of a small machine's cores just while it loads.
+        """
+        self._quiet_until = time.monotonic() + _NOBODY_SECONDS
+
+    def browser_came(self) -> None:
+        """A browser has said hello: its page stands in a moment."""
+        if self._quiet_until:
+            self._quiet_until = min(self._quiet_until, time.monotonic() + _PUT_UP_SECONDS)
+            self._awaited.set()
+
+    def _wait_for_page(self) -> None:
+        if self._awaited.wait(self._quiet_until - time.monotonic()):
+            time.sleep(max(self._quiet_until - time.monotonic(), 0.0))
+        self._quiet_until = 0.0
 
     def add_by_hand(self, evaluation: Evaluation) -> int:
         """Keep a hand-made design in the run's archive.
@@ -136,6 +158,8 @@ class Runs:
         self._pictures.latest("picture", self._refresh)
 
     def _refresh(self) -> None:
+        if self._quiet_until:
+            self._wait_for_page()
         # A search tells of every evaluation; eyes need a few pictures a second.
         pause = self._rested - time.monotonic()
         if pause > 0.0:

@@ -51,6 +51,7 @@ class AppState:
         doings: who did what to the run last, for people.
         asked_to_delete: the run of the library that somebody is being asked about, or "".
         renamed: the run of the library whose name and note are being written, or "".
+        coming: the run of the library that is being opened, or "": until it stands all that is shown is the one before.
         ship: a ship of the user's own on its way to a case.
         history: changes of the settings, which can be taken back.
     """
@@ -66,6 +67,7 @@ class AppState:
     doings: str = ""
     asked_to_delete: str = ""
     renamed: str = ""
+    coming: str = ""
     ship: OwnShip = field(default_factory=OwnShip)
     history: History[DraftSnapshot] = field(default_factory=History)
 
@@ -141,8 +143,8 @@ class AppState:
             )
             self.picture = picture
             watchers = list(self.sessions.values())
-        self.hub.changed("run", news=not replaced)
         if not replaced:
+            self.hub.changed("run", news=True)
             for watcher in watchers:
                 watcher.hub.changed("run", news=True)
             return
@@ -151,6 +153,8 @@ class AppState:
         except HpsopError as error:
             # what was shown before is of another run: better nothing than that
             shown, why = None, str(error)
+        # run, charts and design change together
+        self.hub.changed("run")
         for watcher in watchers:
             watcher.leave_run(shown)
             if why:
@@ -167,6 +171,11 @@ class AppState:
     def ask_to_delete(self, name: str) -> None:
         """Ask whether this run of the library is to be deleted, or no longer for ""."""
         self.asked_to_delete = name
+        self.tell_all("library")
+
+    def expect(self, name: str) -> None:
+        """This run of the library is being opened, or none any more for ""."""
+        self.coming = name
         self.tell_all("library")
 
     def rename(self, name: str) -> None:

@@ -39,7 +39,12 @@ class LibraryView:
                 )
             else:
                 buttons = chips(
-                    chip("open_run", "shown" if current else "open", entry.name, on=current),
+                    chip(
+                        "open_run",
+                        "opening …" if self._app.coming == entry.name else "shown" if current else "open",
+                        entry.name,
+                        on=current,
+                    ),
                     chip("continue_run", "continue", entry.name, hint="open it and go on with it")
                     if entry.continuable and not current
                     else NOTHING,

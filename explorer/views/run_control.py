@@ -26,8 +26,6 @@ class RunControl:
             ("run_stop", lambda event: runs.control("stop"), "stopped the run"),
             ("run_continue", lambda event: runs.control("continue"), "continued the run"),
             ("run_extend", lambda event: runs.extend(_count(event.arg)), "extended the run"),
-            ("open_run", lambda event: runs.open_named(event.arg), "opened another run"),
-            ("continue_run", lambda event: runs.continue_named(event.arg), "continued a run"),
             ("delete_run", lambda event: self._app.ask_to_delete(event.arg), ""),
             ("delete_no", lambda event: self._app.ask_to_delete(""), ""),
             ("delete_yes", lambda event: self._delete(event.arg), "deleted a run"),
@@ -44,6 +42,11 @@ class RunControl:
         )
         for name, action, told in actions:
             session.gestures.on("act", name, self._guarded(action, told))
+        for name, show, told in (
+            ("open_run", runs.open_named, "opened another run"),
+            ("continue_run", runs.continue_named, "continued a run"),
+        ):
+            session.gestures.on("act", name, self._opening(self._guarded(self._opened(show), told)))
 
     def _guarded(self, action: Callable[[PageEvent], None], told: str) -> Callable[[PageEvent], None]:
         def run(event: PageEvent) -> None:
@@ -56,6 +59,24 @@ class RunControl:
                 self._app.did(self._session, told)
 
         return lambda event: self._app.worker.every(lambda: run(event))
+
+    def _opening(self, guarded: Callable[[PageEvent], None]) -> Callable[[PageEvent], None]:
+        """Says at once that another run is on its way: a large one takes a second, and a busy machine more."""
+
+        def begin(event: PageEvent) -> None:
+            self._app.expect(event.arg)
+            guarded(event)
+
+        return begin
+
+    def _opened(self, action: Callable[[str], None]) -> Callable[[PageEvent], None]:
+        def run(event: PageEvent) -> None:
+            try:
+                action(event.arg)
+            finally:
+                self._app.expect("")
+
+        return run
 
     def _adopt(self) -> None:
         case = self._app.picture.case

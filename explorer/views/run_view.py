@@ -78,6 +78,8 @@ class RunView:
         if picture.message:
             message = fill('<p class="{}">{}</p>', "bad" if status == FAILED else "soft", picture.message)
         label = runs.label()
+        if self._app.coming not in ("", picture.name):
+            message = fill('<p class="soft" role="status">opening {} …</p>', _short(self._app.coming))
         name = fill(
             '<span class="soft" title="{}">{}</span>',
             f"{picture.name} {label.note}".strip(),

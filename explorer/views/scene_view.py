@@ -50,6 +50,20 @@ _PICTURE_SECONDS = 90.0
 _FRAME_SECONDS = 1.0 / 25.0
 
 
+def prepare_scene(designs: Designs) -> None:
+    """Make what a browser will see first, so that it need not wait for it.
+
+    Raises:
+        HpsopError: the run's compromise or its initial design has no shape.
+    """
+    first = designs.best().evaluation
+    for variables in (first.variables, designs.initial(first.level).evaluation.variables):
+        designs.geometry(variables, near=False)
+        designs.ghost(variables, near=False)
+    sky(dark=False)
+    calm_water(dark=False)
+
+
 class SceneView:
     """One browser's own 3D nodes, moved in place where the topology allows."""
 
@@ -73,6 +87,7 @@ class SceneView:
         self._made_room, self._keeps_panels = False, False
         self._spinning = threading.Event()
         self._dark: bool | None = None
+        self._begun = False
         # a surroundings' map as light doubles what a frame costs without graphics hardware; lamps do
         client.scene.configure_environment_map(None)
         client.scene.configure_default_lights(cast_shadow=False)
@@ -85,10 +100,15 @@ class SceneView:
         session.gestures.on("act", "camera", self._camera)
         session.on_close(self._spinning.clear)
         client.camera.on_update(self._looked)
+
+    def begin(self) -> None:
+        """The browser's panels stand: now the ship, which keeps one without graphics hardware busy for a second."""
+        self._begun = True
         self._ask()
 
     def _ask(self) -> None:
-        self._session.heavy.latest("geometry", self.draw)
+        if self._begun:
+            self._session.heavy.latest("geometry", self.draw)
 
     def draw(self) -> None:
         """Bring the scene to the session's selection and options."""
@@ -130,7 +150,9 @@ class SceneView:
                 geometry = self._designs.geometry(shown.evaluation.variables, near)
                 variables = ghost.evaluation.variables if ghost else None
                 behind = (
-                    (self._designs.geometry(variables, near), self._designs.ghost(variables)) if variables else None
+                    (self._designs.geometry(variables, near), self._designs.ghost(variables, near))
+                    if variables
+                    else None
                 )
             except HpsopError as error:
                 session.notify("No geometry for this design", str(error), "yellow")

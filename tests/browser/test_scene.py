@@ -52,6 +52,10 @@ def test_the_whole_ship_is_in_the_picture_when_the_page_opens(explorer, page):
     # the view between the docks, as the browser says; it may take some frames until the last dock stands
     wait_until(lambda: _seen(camera, ship) < 1.0, 30, "a camera that holds the ship")
     assert _seen(camera, ship) > 0.8  # and fills the view
+    # without graphics hardware these cost seconds: a light made of a photograph, and pictures larger than they are seen
+    assert page.evaluate("() => window.photographs") == 0
+    assert page.evaluate("() => document.documentElement.classList.contains('hpsop-stands')")
+    assert page.evaluate("() => document.querySelector('canvas[data-engine]').width") > 300
 
 
 def test_screenshot_downloads_a_picture(explorer, page):

@@ -6,6 +6,8 @@ import logging
 import os
 import shutil
 import tempfile
+import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 
@@ -17,9 +19,15 @@ from run_files import small_case, wait_until
 
 from explorer.app import Explorer, _chosen, main
 from explorer.server.security import free_port
+from explorer.server.worker import LatestWorker
+from explorer.services.designs import Designs
 from explorer.services.library import NOT_READABLE, RunLibrary, runs_folder
 from explorer.services.run_keeper import RunKeeper
-from explorer.state.run_picture import FAILED, FINISHED
+from explorer.services.runs import Runs
+from explorer.state.app_state import AppState
+from explorer.state.draft import Draft
+from explorer.state.hub import Hub
+from explorer.state.run_picture import FAILED, FINISHED, RunPicture
 from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import RunController, optimize
 from hpsop_core.runs.events import RunEvent
@@ -64,6 +72,58 @@ def test_the_first_picture_of_a_large_run_has_its_points_and_the_next_one_all_nu
         assert picture.generations == whole.generations and picture.compromise == whole.compromise
         for name in ("ids", "level", "generation", "objectives", "feasible", "failed", "by_hand", "predicted"):
             assert np.array_equal(getattr(picture, name), getattr(whole, name), equal_nan=name == "objectives"), name
+
+
+def test_a_click_does_not_wait_for_a_picture_of_a_large_run(keeper: RunKeeper, monkeypatch: pytest.MonkeyPatch) -> None:
+    reading, go_on = threading.Event(), threading.Event()
+
+    def slow(*_: object) -> None:
+        reading.set()
+        assert go_on.wait(30.0)
+
+    design = keeper.picture().compromise
+    assert design is not None
+    monkeypatch.setattr(keeper, "_read_new", slow)
+    picture = threading.Thread(target=keeper.picture)
+    picture.start()
+    found: list[object] = []
+    click = threading.Thread(target=lambda: found.extend((keeper.evaluation(design), keeper.initial(1))))
+    try:
+        assert reading.wait(SECONDS)
+        click.start()
+        click.join(SECONDS)
+        assert len(found) == 2 and None not in found
+    finally:
+        go_on.set()
+        picture.join()
+        click.join()
+
+
+def test_numbers_of_a_run_are_read_when_the_page_stands(tmp_path: Path, finished: Path) -> None:
+    case = small_case()
+    draft = Draft(case)
+    draft.begin(case)
+    worker = LatestWorker("test")
+    state = AppState(draft, worker, Hub(worker), RunPicture("", case))
+    runs = Runs(state, Designs(state), RunLibrary(tmp_path), workers=1)
+    pictures: list[float] = []
+    try:
+        runs.open(finished)
+        keeper = runs._keeper
+        assert keeper is not None
+        make = keeper.picture
+        keeper.picture = lambda: (pictures.append(time.monotonic()), make())[1]  # type: ignore[method-assign]
+        runs.await_browser()
+        runs.news()
+        time.sleep(0.3)
+        assert not pictures
+        runs.browser_came()
+        came = time.monotonic()
+        wait_until(lambda: bool(pictures), SECONDS)
+        assert pictures[0] - came > 1.0
+    finally:
+        runs.close()
+        worker.close()
 
 
 def test_who_watches_from_the_beginning_knows_what_a_late_comer_knows(tmp_path: Path) -> None:

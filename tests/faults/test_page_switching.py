@@ -13,6 +13,7 @@ import pytest
 from quick_physics import physics
 from run_files import small_case, wait_until
 
+from explorer.server.bridge import PageEvent
 from explorer.server.worker import LatestWorker
 from explorer.services.designs import Designs
 from explorer.services.library import RunLibrary
@@ -23,9 +24,12 @@ from explorer.state.hub import Hub
 from explorer.state.run_picture import RunPicture
 from explorer.state.session import Session
 from explorer.views.on_display import select_design
+from explorer.views.run_control import RunControl
+from explorer.views.run_view import RunView
 from explorer.views.settings_view import SettingsView
 from explorer.views.table_view import TableView
 from hpsop_core.case.case import load_case
+from hpsop_core.errors import InputError
 from hpsop_core.runs.controller import optimize
 
 
@@ -132,6 +136,44 @@ def test_while_the_next_run_s_first_design_is_computed_none_of_the_run_before_is
 
     page.state.show_run(RunPicture("other.hpsop", small_case(), opening=999), first)
     assert seen == [(None, ())]
+
+
+def test_run_and_design_change_together(page: Page) -> None:
+    told: list[str] = []
+    page.state.hub.on(("run",), lambda: told.append("run"))
+    before: list[list[str]] = []
+
+    def first() -> None:
+        page.worker.wait_until_idle(10.0)
+        before.append(list(told))
+
+    page.state.show_run(RunPicture("other.hpsop", small_case(), opening=999), first)
+    assert page.worker.wait_until_idle(10.0)
+    assert (before, told) == ([[]], ["run"])
+
+
+def test_a_run_that_is_being_opened_is_named_until_it_stands_or_is_refused(page: Page) -> None:
+    status = MagicMock()
+    status.add_html.side_effect = lambda *_, **__: MagicMock()
+    view = RunView(page.state, page.runs, status)
+    opening, go_on = threading.Event(), threading.Event()
+
+    def slow(name: str) -> None:
+        opening.set()
+        assert go_on.wait(30.0)
+        raise InputError(f"{name}: is damaged")
+
+    page.runs.open_named = slow  # type: ignore[method-assign]
+    RunControl(page.session, page.runs)
+    page.session.gestures.receive(PageEvent("act", name="open_run", arg="other.hpsop"))
+    try:
+        assert opening.wait(10.0)
+        assert "opening other.hpsop …" in view._facts_slot._content
+    finally:
+        go_on.set()
+    wait_until(lambda: page.state.coming == "", 10.0)
+    assert page.worker.wait_until_idle(10.0)
+    assert "opening" not in view._facts_slot._content
 
 
 def test_the_same_file_opened_again_keeps_what_is_selected(page: Page, finished: tuple[Path, Path]) -> None:
