@@ -23,7 +23,7 @@ from hpsop_core.geometry.propeller.hub import hub_of
 from hpsop_core.geometry.propeller.mesh import propeller_mesh, propeller_view_parts
 from hpsop_core.geometry.propeller.nurbs import blade_nurbs, hub_nurbs, propeller_surfaces
 from hpsop_core.geometry.propeller.propeller import Propeller, load_propeller, propeller_family
-from hpsop_core.geometry.propeller.sections import cosine_chord_fractions
+from hpsop_core.geometry.propeller.sections import cosine_chord_fractions, half_thickness
 from hpsop_core.geometry.propeller.surface import blade_points
 from hpsop_core.hydro.blade_panels.grid import blade_grid, to_propeller_axes
 
@@ -147,6 +147,17 @@ def test_panels_stand_on_the_surface_with_its_edges_closed(
     monkeypatch.setattr(closed, "blade_surface", moved)
     elsewhere = to_propeller_axes(blade_grid(propeller, 24, 10).surface.corners)
     np.testing.assert_allclose(elsewhere, corners + np.array([0.01, 0.0, 0.0]), atol=1e-12)
+
+
+@pytest.mark.parametrize(("blades", "area"), [(2, 1.1), (3, 1.1), (3, 1.08), (5, 0.607)])
+def test_fine_panels_of_back_and_face_do_not_coincide(blades: int, area: float) -> None:
+    """At the nose of wide tips the table's thickness is less than the surface's own exactness."""
+    propeller = propeller_family(load_propeller(), 9.0, blades, 1.0, area)
+    grid = blade_grid(propeller, 80, 24)
+    apart = np.linalg.norm(grid.surface.corners[1:40, :-1] - grid.surface.corners[79:40:-1, :-1], axis=2)
+    sections = propeller.table.at(grid.radius_edges[:-1])
+    shape = half_thickness(cosine_chord_fractions(41))[39:0:-1, None]
+    assert np.min(apart / (4.0 * sections.thickness_ratio * sections.chord_ratio * shape)) > 0.45
 
 
 def test_surfaces_stand_where_the_mesh_stands() -> None:

@@ -4,7 +4,9 @@ The blade has one surface, `nurbs.blade_surface`. Its trailing edge and tip have
 the section's own would be less, because what is milled and meshed needs it; a flow solver's Kutta condition needs a
 trailing edge without. Points of back and face at the same chord fraction lie on one normal of the chord, on either side
 of the mean line. The surface was drawn with a half thickness of hypot(own, edge) (`surface.finite_edge_points`), so its
-points give the mean line as their middle, and the section's own half thickness as sqrt(half^2 - edge^2).
+points give the mean line as their middle, and the section's own half thickness as sqrt(half^2 - edge^2). At the nose of
+wide thin tips that is a small difference of two numbers which the surface holds to 1e-4 D: it may come out as nothing,
+and back and face would be the same panel. There the table's own thickness counts.
 """
 
 from __future__ import annotations
@@ -15,9 +17,12 @@ import numpy as np
 
 from hpsop_core.geometry.propeller.nurbs import blade_parameters, blade_surface
 from hpsop_core.geometry.propeller.propeller import Propeller
-from hpsop_core.geometry.propeller.sections import cosine_chord_fractions
+from hpsop_core.geometry.propeller.sections import cosine_chord_fractions, half_thickness
 from hpsop_core.geometry.propeller.surface import edge_half_thickness
 from hpsop_core.typing_aliases import Array
+
+# What the difference of half and edge may lose of the table's own thickness.
+_LEAST_OF_TABLE = 0.5
 
 
 @dataclass(frozen=True, eq=False)
@@ -85,6 +90,16 @@ def closed_sections(propeller: Propeller, radius_ratio: Array, intervals: int) -
     mean = ClosedSections(radius, middle_x, middle_theta, half_x, half_theta)
     edge = edge_half_thickness(mean.chord[:, None], cosine_chord_fractions(intervals + 1))
     half = np.hypot(half_x, radius[:, None] * half_theta)
-    own = np.sqrt(np.maximum(1.0 - (edge / np.where(half > 0.0, half, 1.0)) ** 2, 0.0))
+    drawn = np.where(half > 0.0, half, 1.0)
+    own = np.sqrt(np.maximum(1.0 - (edge / drawn) ** 2, 0.0))
+    # On the optimiser's panels never less than two thirds of the table's comes out.
+    own = np.maximum(own, _LEAST_OF_TABLE * _own_half_thickness(propeller, radius, intervals) / drawn)
     own[:, [0, -1]] = 0.0
     return ClosedSections(radius, middle_x, middle_theta, own * half_x, own * half_theta)
+
+
+def _own_half_thickness(propeller: Propeller, radius: Array, intervals: int) -> Array:
+    """Of the table, in tip radii, (nr, nc)."""
+    sections = propeller.table.at(radius)
+    greatest = 2.0 * sections.chord_ratio * sections.thickness_ratio
+    return np.asarray(greatest[:, None] * half_thickness(cosine_chord_fractions(intervals + 1)))
