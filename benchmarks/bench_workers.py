@@ -95,7 +95,7 @@ def main() -> None:
     task = pickle.dumps((parcel_task, parcel.label, case.initial.variables, 2))
     once = len(parcel.content or b"")
     result = evaluation_task(evaluate, case, case.initial.variables, 2, reference)
-    print(f"a design on its way to a worker {len(task)} bytes ({once} once), back {len(result)} bytes")
+    print(f"a design on its way to a worker {len(task)} bytes ({once} once), back {len(pickle.dumps(result))} bytes")
 
 
 if __name__ == "__main__":

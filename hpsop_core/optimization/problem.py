@@ -86,7 +86,8 @@ class Outcome:
         if within and not feasible:
             violations = (*violations, UNNAMED_VIOLATION)
         cavitation, predicted = data["constraints"].get("cavitation"), bool(data.get("predicted"))
-        return cls(evaluation_id, (float(f1), float(f2)), violations, feasible, cavitation, predicted)
+        margin = None if cavitation is None else float(cavitation)
+        return cls(evaluation_id, (float(f1), float(f2)), violations, feasible, margin, predicted)
 
     def violation(self, cavitation_margin: float) -> float:
         """Sum of the violations when Keller's criterion must be kept by a margin, in expanded area ratio."""

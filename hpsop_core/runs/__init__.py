@@ -5,11 +5,11 @@ A file for a thought. The run file: ``store`` (as its writer sees it), ``reader`
 (damage is found), ``records``, ``fronts`` (the best of everything solved), ``packing`` (rows of few bytes), ``ship``
 (an own hull's and propeller's files aboard).
 Where evaluations run: ``workers`` (what is asked of such a place), ``executor`` (local processes), ``dask_workers`` (a
-cluster), ``tasks`` (what a worker does), ``parcels`` (what it is sent once), ``preload`` (what it has imported before
-it starts), ``batch`` (evaluating a generation on workers that may die). The run: ``replay`` (the loop, and why resuming
-is the same loop), ``ledger`` (which number stands for which design), ``learning`` (the surfaces that a run learns),
-``refinement`` (errors of its final designs); ``control``, ``events`` and ``controller`` (a run in the hands of a
-person).
+cluster), ``tasks`` (what a worker does), ``parcels`` (what it is sent once), ``results`` (what it sends back),
+``preload`` (what it has imported before it starts), ``batch`` (evaluating a generation on workers that may die). The
+run: ``replay`` (the loop, and why resuming is the same loop), ``ledger`` (which number stands for which design),
+``learning`` (the surfaces that a run learns), ``refinement`` (errors of its final designs); ``control``, ``events`` and
+``controller`` (a run in the hands of a person).
 """
 
 from __future__ import annotations

@@ -15,8 +15,9 @@ from typing import Any, TypeAlias
 from hpsop_core.case.case import Case
 from hpsop_core.optimization.problem import Candidate
 from hpsop_core.runs.control import RunControl
-from hpsop_core.runs.parcels import UNKNOWN, Parcel, parcel_of, parcel_task
-from hpsop_core.runs.tasks import EvaluateFunction, WarmUpFunction, failure_text, warm_up_task
+from hpsop_core.runs.parcels import Parcel, parcel_of, parcel_task
+from hpsop_core.runs.results import Result
+from hpsop_core.runs.tasks import EvaluateFunction, WarmUpFunction, failure, warm_up_task
 from hpsop_core.runs.workers import Workers, WorkersLostError
 
 _TICK = 0.1  # seconds between looks at the controls while evaluations run
@@ -30,8 +31,8 @@ _GATHERING = 0.05  # seconds within which quick evaluations are stored together
 _RECONNECT_INTERVAL = 2.0  # seconds between tries to reach a cluster that does not answer
 
 
-FinishedFunction: TypeAlias = Callable[[Sequence[tuple[int, Candidate, str]]], None]
-"""Told of results that came in together: id, candidate and the evaluation's JSON text of each."""
+FinishedFunction: TypeAlias = Callable[[Sequence[tuple[int, Candidate, Result]]], None]
+"""Told of results that came in together: id, candidate and what the evaluation came to of each."""
 
 
 def reconnect(workers: Workers, control: RunControl, lost: Callable[[str], None], reason: str) -> None:
@@ -116,10 +117,10 @@ class BatchEvaluator:
         self._limit = case.optimization.evaluation_time_limit
         self._queue: deque[_Job] = deque()
         self._suspects: deque[_Job] = deque()
-        self._under_way: dict[Future[str], _Job] = {}
+        self._under_way: dict[Future[Result | None], _Job] = {}
         self._parcels: dict[int, Parcel] = {}
         self._finished: FinishedFunction = lambda results: None
-        self._results: list[tuple[int, Candidate, str]] = []
+        self._results: list[tuple[int, Candidate, Result]] = []
         self._first_result = 0.0
 
     def run(
@@ -132,8 +133,7 @@ class BatchEvaluator:
 
         Args:
             tasks: (id, candidate, reference of its level).
-            finished: called with what has come in, quick evaluations gathered: for each its id, candidate, and the
-                evaluation's JSON text.
+            finished: called with what has come in, quick evaluations gathered.
             paused: called with True when nothing is under way any more because of a pause, and with False when it is
                 over.
 
@@ -191,7 +191,7 @@ class BatchEvaluator:
             results, self._results = self._results, []
             self._finished(results)
 
-    def _keep(self, result: tuple[int, Candidate, str]) -> None:
+    def _keep(self, result: tuple[int, Candidate, Result]) -> None:
         if not self._results:
             self._first_result = time.monotonic()
         self._results.append(result)
@@ -243,7 +243,7 @@ class BatchEvaluator:
             if job.started is None:
                 job.started = now
 
-    def _submitted(self, job: _Job) -> Future[str]:
+    def _submitted(self, job: _Job) -> Future[Result | None]:
         candidate = job.candidate
         if self._warm_up is not None:
             # Before its clock runs: a worker that was just started has yet to load, and maybe to compile, the solvers.
@@ -326,15 +326,16 @@ class BatchEvaluator:
                 broken = True
                 continue
             job = self._under_way.pop(future)
-            if error is None and future.result() == UNKNOWN:
+            result = future.result() if error is None else None
+            if error is None and result is None:
                 job.unknown = True
                 self._queue_again(job)
                 continue
             if job.started is not None:
                 took = time.monotonic() - job.started
                 self._typical = took if self._typical == math.inf else 0.8 * self._typical + 0.2 * took
-            if error is None:
-                self._keep((job.number, job.candidate, future.result()))
+            if result is not None:
+                self._keep((job.number, job.candidate, result))
             elif type(error).__name__ == "KilledWorker":
                 # Dask has tried it on several workers already and knows for certain that this one was to blame.
                 self._keep(self._failed(job, "worker", "its worker processes died"))
@@ -356,11 +357,14 @@ class BatchEvaluator:
         self._hand_out()
         self._workers.rebuild()
 
-    def _failed(self, job: _Job, stage: str, reason: str) -> tuple[int, Candidate, str]:
+    def _failed(self, job: _Job, stage: str, reason: str) -> tuple[int, Candidate, Result]:
         candidate = job.candidate
         elapsed = 0.0 if job.started is None else time.monotonic() - job.started
-        text = failure_text(self._case, candidate.variables, candidate.level, stage, reason, elapsed)
-        return job.number, candidate, text
+        return (
+            job.number,
+            candidate,
+            failure(self._case, candidate.variables, candidate.level, stage, reason, elapsed),
+        )
 
     def _drain(self) -> None:
         """The run ends: keep what finishes within a moment, drop the rest."""

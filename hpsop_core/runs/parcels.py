@@ -14,10 +14,8 @@ from typing import Any
 
 from hpsop_core.case.case import Case
 from hpsop_core.case.variables import DesignVariables
+from hpsop_core.runs.results import Result
 from hpsop_core.runs.tasks import EvaluateFunction, evaluation_task
-
-UNKNOWN = ""
-"""The answer of a worker that does not have the parcel: no evaluation's JSON text is empty."""
 
 _KEPT = 4  # parcels in a worker: of each level, and of the newest surfaces
 
@@ -48,12 +46,12 @@ def parcel_of(evaluate: EvaluateFunction, case: Case, reference: Any) -> Parcel:
     return Parcel(hashlib.sha256(content).hexdigest(), content)
 
 
-def parcel_task(parcel: Parcel, variables: DesignVariables, level: int) -> str:
-    """Evaluate one design in this process, as ``evaluation_task``; ``UNKNOWN`` where the parcel is not here."""
+def parcel_task(parcel: Parcel, variables: DesignVariables, level: int) -> Result | None:
+    """Evaluate one design in this process, as ``evaluation_task``; None where the parcel is not here."""
     found = _opened.get(parcel.name)
     if found is None:
         if parcel.content is None:
-            return UNKNOWN
+            return None
         # From the run that this worker works for, as every other argument.
         found = _opened[parcel.name] = pickle.loads(parcel.content)  # noqa: S301
         for name in list(_opened)[:-_KEPT]:

@@ -25,11 +25,13 @@ from hpsop_core.runs.control import RunControl
 from hpsop_core.runs.events import RunEvent, RunSnapshot, State
 from hpsop_core.runs.learning import Learning
 from hpsop_core.runs.ledger import DivergedError, Ledger
+from hpsop_core.runs.packing import document_of
 from hpsop_core.runs.records import variables_text
 from hpsop_core.runs.refinement import keep_errors, shown_front, unrefined
+from hpsop_core.runs.results import Result
 from hpsop_core.runs.schema import initial_id, software_versions
 from hpsop_core.runs.store import RunStore, StoreUnwritableError
-from hpsop_core.runs.tasks import Physics, failure_text, reference_task
+from hpsop_core.runs.tasks import Physics, failure, reference_task
 from hpsop_core.runs.workers import Workers, WorkersLostError, WorkersUnavailableError
 
 _EVENT_INTERVAL = 0.1  # seconds between events about progress within a generation
@@ -176,8 +178,11 @@ class RunDriver:
         ]
         refined: dict[int, Mapping[str, Any]] = {}
 
-        def finished(results: Sequence[tuple[int, Candidate, str]]) -> None:
-            refined.update((number, json.loads(result)) for number, _, result in results)
+        def finished(results: Sequence[tuple[int, Candidate, Result]]) -> None:
+            refined.update(
+                (number, document_of(result.essence, variables_text(candidate.variables)))
+                for number, candidate, result in results
+            )
 
         def paused(now: bool) -> None:
             self._change_state("paused" if now else "running", "")
@@ -295,7 +300,7 @@ class RunDriver:
         """Evaluate designs and store each as it finishes; returns the seconds spent waiting for people or disks."""
         waited = 0.0
 
-        def finished(results: Sequence[tuple[int, Candidate, str]]) -> None:
+        def finished(results: Sequence[tuple[int, Candidate, Result]]) -> None:
             nonlocal waited
             waited += self._record(results, generation)
 
@@ -335,7 +340,7 @@ class RunDriver:
             )
             self._keep(lambda: self._store.note(text))
 
-    def _record(self, results: Sequence[tuple[int, Candidate, str]], generation: int) -> float:
+    def _record(self, results: Sequence[tuple[int, Candidate, Result]], generation: int) -> float:
         """Keep what came in together; returns the seconds that the file could not be written."""
         started = time.monotonic()
         blocked = False
@@ -361,8 +366,7 @@ class RunDriver:
         )
         for (number, _, result), outcome in zip(results, outcomes, strict=True):
             if outcome.failed:
-                data = json.loads(result)
-                self._tell("failure", evaluation_id=number, text=f"{data.get('stage', '')}: {data['reason']}")
+                self._tell("failure", evaluation_id=number, text=f"{result.stage}: {result.reason}")
         self._progress()
         return time.monotonic() - started if blocked else 0.0
 
@@ -378,8 +382,8 @@ class RunDriver:
                 if planned:
                     raise
                 # No generation needs this level; that it cannot be computed is worth a record, not the run.
-                text = failure_text(self._case, variables, level, "reference", str(error), 0.0)
-                self._record([(level, candidate, text)], 0)
+                result = failure(self._case, variables, level, "reference", str(error), 0.0)
+                self._record([(level, candidate, result)], 0)
             else:
                 self._evaluate([(level, candidate)], 0)
         if self._ledger.outcome(initial_id(level)).failed and planned:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import contextlib
+import dataclasses
 import json
 import os
 import sqlite3
@@ -32,7 +33,7 @@ from hpsop_core.runs.connections import (
 from hpsop_core.runs.content import RunContent
 from hpsop_core.runs.lock import WriterLock, refuse_second_name
 from hpsop_core.runs.migrations import lift
-from hpsop_core.runs.packing import dictionary_of, pack
+from hpsop_core.runs.packing import pack
 from hpsop_core.runs.records import (
     fingerprint,
     generation_from_text,
@@ -41,6 +42,7 @@ from hpsop_core.runs.records import (
     json_text,
     variables_text,
 )
+from hpsop_core.runs.results import Result
 from hpsop_core.runs.schema import (
     COLUMNS,
     HAND_IDS_BEGIN,
@@ -333,47 +335,34 @@ class RunStore:
             ).fetchone()
         return "" if row is None else f"{row[0]}: {row[1]}"
 
-    def record_evaluation(self, number: int, candidate: Candidate, generation: int, result: str) -> Outcome:
+    def record_evaluation(self, number: int, candidate: Candidate, generation: int, result: Result) -> Outcome:
         """Store a finished evaluation of the search; when this returns, it is never lost.
 
         Args:
             number: its id.
             candidate: what was asked.
             generation: that asked for it.
-            result: the evaluation's JSON text.
+            result: what it came to.
 
         Raises:
             StoreUnwritableError: the file cannot be written.
         """
         return self.record_evaluations([(number, candidate, result)], generation)[0]
 
-    def record_evaluations(self, results: Sequence[tuple[int, Candidate, str]], generation: int) -> list[Outcome]:
+    def record_evaluations(self, results: Sequence[tuple[int, Candidate, Result]], generation: int) -> list[Outcome]:
         """Store finished evaluations of the search in one transaction: all of them, or none.
 
         Args:
-            results: of each its id, what was asked, and the evaluation's JSON text.
+            results: of each its id, what was asked, and what it came to.
             generation: that asked for them.
 
         Raises:
             StoreUnwritableError: the file cannot be written.
         """
-        outcomes = []
         with self._writing() as connection:
             for number, candidate, result in results:
-                data = json.loads(result)
-                surface = candidate.surface if data.get("predicted") else 0
-                self._insert_evaluation(
-                    connection,
-                    number,
-                    candidate.level,
-                    candidate.variables,
-                    candidate.origin,
-                    generation,
-                    data,
-                    surface,
-                )
-                outcomes.append(Outcome.from_json(number, data))
-        return outcomes
+                self._insert_evaluation(connection, number, candidate, generation, result)
+        return [dataclasses.replace(result.outcome, evaluation_id=number) for number, _, result in results]
 
     def record_by_hand(self, evaluation: Evaluation) -> int:
         """Store a design that a person made; it never enters the search.
@@ -385,7 +374,8 @@ class RunStore:
             StoreUnwritableError: the file cannot be written.
         """
         text = variables_text(evaluation.variables)
-        data = evaluation.as_dict()
+        candidate = Candidate(evaluation.level, evaluation.variables, "hand")
+        result = Result.of(evaluation.as_dict())
         with self._writing() as connection:
             row = connection.execute(
                 "SELECT id FROM evaluations WHERE id >= ? AND level = ? AND variables = ?",
@@ -395,7 +385,7 @@ class RunStore:
                 return int(row[0])
             last = connection.execute("SELECT max(id) FROM evaluations WHERE origin = 'hand'").fetchone()[0]
             number = HAND_IDS_BEGIN if last is None else int(last) + 1
-            self._insert_evaluation(connection, number, evaluation.level, evaluation.variables, "hand", 0, data)
+            self._insert_evaluation(connection, number, candidate, 0, result)
         return number
 
     # -- generations -----------------------------------------------------------------------------------------------
@@ -483,43 +473,36 @@ class RunStore:
             self._insert(connection, "files", row)
 
     def _insert_evaluation(
-        self,
-        connection: sqlite3.Connection,
-        number: int,
-        level: int,
-        variables: DesignVariables,
-        origin: str,
-        generation: int,
-        data: dict[str, Any],
-        surface: int = 0,
+        self, connection: sqlite3.Connection, number: int, candidate: Candidate, generation: int, result: Result
     ) -> None:
         # Remembered once it is read from the file: a write that fails takes its dictionary along.
         self._dictionary = self._dictionary or bytes.fromhex(self.value("dictionary"))
-        dictionary = self._dictionary or dictionary_of(data)
+        dictionary = self._dictionary or result.essence
         if not self._dictionary:
             self._put_values(connection, {"dictionary": dictionary.hex()})
-        text = variables_text(variables)
-        first, second = data["objectives"]["f1"], data["objectives"]["f2"]
+        text = variables_text(candidate.variables)
+        surface = candidate.surface if result.outcome.predicted else 0
+        first, second = result.outcome.objectives or (None, None)
         row = (
             int(number),
-            int(level),
+            int(candidate.level),
             text,
-            origin,
+            candidate.origin,
             int(generation),
             int(surface),
-            data["status"],
-            data.get("stage", ""),
-            data["reason"],
-            int(data["feasible"]),
-            None if first is None else float(first),
-            None if second is None else float(second),
-            float(data["elapsed"]),
+            result.status,
+            result.stage,
+            result.reason,
+            int(result.feasible),
+            first,
+            second,
+            result.elapsed,
             time.time(),
-            fingerprint(level, text, surface),
-            pack(data, dictionary),
+            fingerprint(candidate.level, text, surface),
+            pack(result.essence, dictionary),
         )
         self._insert(connection, "evaluations", row)
-        if origin == "hand":
+        if candidate.origin == "hand":
             self._tally.counts["hand"] = self._tally.counts.get("hand", 0) + 1
 
 

@@ -1,4 +1,4 @@
-"""What a worker process does: one evaluation in, one JSON text out, and nothing that can end a run."""
+"""What a worker process does: one evaluation in, one result out, and nothing that can end a run."""
 
 from __future__ import annotations
 
@@ -23,6 +23,7 @@ from hpsop_core.case.variables import DesignVariables
 from hpsop_core.errors import InputError, SolverFailure
 from hpsop_core.evaluation.result import Evaluation, Failed
 from hpsop_core.runs.records import json_text
+from hpsop_core.runs.results import Result
 
 EvaluateFunction: TypeAlias = Callable[[Case, DesignVariables, int, Any], Evaluation]
 """(case, variables, level, reference) -> evaluation; picklable."""
@@ -89,12 +90,12 @@ def _make_ready(case: Case, level: int, reference: Any) -> None:
 
 def evaluation_task(
     evaluate: EvaluateFunction, case: Case, variables: DesignVariables, level: int, reference: Any
-) -> str:
+) -> Result:
     """Evaluate one design in this process.
 
     Returns:
-        The evaluation's JSON text. An exception, a NaN or an infinity becomes a failed evaluation with its stage and
-        reason: nothing but the death of the process comes out of here otherwise.
+        What it came to. An exception, a NaN or an infinity becomes a failed evaluation with its stage and reason:
+        nothing but the death of the process comes out of here otherwise.
     """
     pin_threads()
     started = time.perf_counter()
@@ -103,21 +104,21 @@ def evaluation_task(
         fault = _missing(data)
         if not fault:
             try:
-                return json_text(data)
+                return Result.of(data)
             except ValueError as error:
-                # JSON has no NaN: its writer looks at every number anyway, and only then we look for which it was.
+                # Every number is looked at there anyway, and only then we look for which it was.
                 fault = _search(data, "") or _one_line(error)
         stage, reason = "check", fault
-    except SolverFailure as failure:
-        stage, reason = failure.stage, failure.reason
+    except SolverFailure as error:
+        stage, reason = error.stage, error.reason
     except Exception as error:  # noqa: BLE001 - whatever a solver raises is this design's failure, not the run's
         stage, reason = "evaluation", _one_line(error)
-    return failure_text(case, variables, level, stage, reason, time.perf_counter() - started)
+    return failure(case, variables, level, stage, reason, time.perf_counter() - started)
 
 
-def failure_text(case: Case, variables: DesignVariables, level: int, stage: str, reason: str, elapsed: float) -> str:
-    """The JSON text of a failed evaluation."""
-    return json_text(Failed(case.name, level, variables, stage, reason, elapsed).as_dict())
+def failure(case: Case, variables: DesignVariables, level: int, stage: str, reason: str, elapsed: float) -> Result:
+    """What a failed evaluation came to."""
+    return Result.of(Failed(case.name, level, variables, stage, reason, elapsed).as_dict())
 
 
 def reference_task(reference_for: ReferenceFunction, case: Case, level: int) -> tuple[bool, str]:

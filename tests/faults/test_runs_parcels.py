@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-import json
 import time
 from collections.abc import Callable, Sequence
 from concurrent.futures import Future, ThreadPoolExecutor
@@ -19,7 +18,10 @@ from hpsop_core.optimization.problem import Candidate
 from hpsop_core.runs import parcels
 from hpsop_core.runs.batch import BatchEvaluator
 from hpsop_core.runs.control import RunControl
-from hpsop_core.runs.parcels import UNKNOWN, Parcel, parcel_of, parcel_task
+from hpsop_core.runs.packing import document_of
+from hpsop_core.runs.parcels import Parcel, parcel_of, parcel_task
+from hpsop_core.runs.records import variables_text
+from hpsop_core.runs.results import Result
 
 CASE = small_case()
 
@@ -74,9 +76,12 @@ def evaluated(function: Any, references: Sequence[str]) -> tuple[_Threads, list[
         for number, reference in enumerate(references)
     ]
 
-    def finished(results: Sequence[tuple[int, Candidate, str]]) -> None:
+    def finished(results: Sequence[tuple[int, Candidate, Result]]) -> None:
         groups.append([number for number, _, _ in results])
-        documents.update((number, json.loads(text)) for number, _, text in results)
+        documents.update(
+            (number, document_of(result.essence, variables_text(candidate.variables)))
+            for number, candidate, result in results
+        )
 
     try:
         assert BatchEvaluator(workers, function, CASE, RunControl()).run(tasks, finished, lambda paused: None)
@@ -88,14 +93,17 @@ def evaluated(function: Any, references: Sequence[str]) -> tuple[_Threads, list[
 def test_a_parcel_is_asked_for_by_who_does_not_have_it() -> None:
     parcel, variables = parcel_of(evaluate, CASE, None), CASE.initial.variables
     parcels._opened.clear()
-    assert parcel_task(parcel.label, variables, 1) == UNKNOWN
-    text = parcel_task(parcel, variables, 1)
-    assert json.loads(text)["objectives"] == evaluate(CASE, variables, 1, None).objectives
-    assert json.loads(parcel_task(parcel.label, variables, 1))["status"] == "ok"
+    assert parcel_task(parcel.label, variables, 1) is None
+    result = parcel_task(parcel, variables, 1)
+    assert result is not None and result.outcome.objectives == tuple(
+        evaluate(CASE, variables, 1, None).objectives.values()
+    )
+    again = parcel_task(parcel.label, variables, 1)
+    assert again is not None and again.status == "ok"
     for number in range(9):
         parcel_task(parcel_of(evaluate, CASE, number), variables, 1)
     assert len(parcels._opened) < 9
-    assert parcel_task(parcel.label, variables, 1) == UNKNOWN
+    assert parcel_task(parcel.label, variables, 1) is None
 
 
 def test_each_reference_is_sent_once_and_each_design_gets_its_own() -> None:

@@ -27,7 +27,7 @@ from hpsop_core.runs.checksums import DamagedRunError
 from hpsop_core.runs.connections import log_path
 from hpsop_core.runs.lock import is_being_written, lock_path
 from hpsop_core.runs.reader import open_run
-from hpsop_core.runs.records import json_text
+from hpsop_core.runs.results import Result
 from hpsop_core.runs.schema import HAND_IDS_BEGIN, SCHEMA_VERSION
 from hpsop_core.runs.store import RunStore, StoreUnwritableError
 
@@ -39,8 +39,8 @@ def candidate(draft: float = 14.5, level: int = 1) -> Candidate:
     return Candidate(level, INITIAL.replaced({"draft": draft}), "sample")
 
 
-def result(asked: Candidate) -> str:
-    return json_text(evaluate(CASE, asked.variables, asked.level, None).as_dict())
+def result(asked: Candidate) -> Result:
+    return Result.of(evaluate(CASE, asked.variables, asked.level, None).as_dict())
 
 
 def generation(number: int, members: tuple[int, ...]) -> Generation:
