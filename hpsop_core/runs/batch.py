@@ -35,6 +35,10 @@ FinishedFunction: TypeAlias = Callable[[Sequence[tuple[int, Candidate, Result]]]
 """Told of results that came in together: id, candidate and what the evaluation came to of each."""
 
 
+def _nothing() -> None:
+    """What is told where nobody listens."""
+
+
 def reconnect(workers: Workers, control: RunControl, lost: Callable[[str], None], reason: str) -> None:
     """Wait until workers that were lost answer again, or the run is stopped.
 
@@ -108,7 +112,7 @@ class BatchEvaluator:
     ) -> None:
         self._lost = lost
         self._warm_up = warm_up
-        self._typical = math.inf  # seconds of an evaluation
+        self._typical = math.inf  # seconds of an evaluation of this level
         self._looked = time.monotonic()
         self._workers = workers
         self._evaluate = evaluate
@@ -118,8 +122,10 @@ class BatchEvaluator:
         self._queue: deque[_Job] = deque()
         self._suspects: deque[_Job] = deque()
         self._under_way: dict[Future[Result | None], _Job] = {}
-        self._parcels: dict[int, Parcel] = {}
+        self._parcels: dict[int, tuple[Any, Parcel]] = {}
         self._finished: FinishedFunction = lambda results: None
+        self._begun: Callable[[], None] = _nothing
+        self._level = 0
         self._results: list[tuple[int, Candidate, Result]] = []
         self._first_result = 0.0
 
@@ -128,6 +134,7 @@ class BatchEvaluator:
         tasks: Sequence[tuple[int, Candidate, Any]],
         finished: FinishedFunction,
         paused: Callable[[bool], None],
+        begun: Callable[[], None] = _nothing,
     ) -> bool:
         """Evaluate all.
 
@@ -136,6 +143,8 @@ class BatchEvaluator:
             finished: called with what has come in, quick evaluations gathered.
             paused: called with True when nothing is under way any more because of a pause, and with False when it is
                 over.
+            begun: called once, when the workers have their first designs, and before anything else is told or waited
+                for.
 
         Returns:
             False if the run was stopped before all were evaluated.
@@ -146,13 +155,16 @@ class BatchEvaluator:
         self._queue = deque(_Job(number, candidate, reference) for number, candidate, reference in tasks)
         self._suspects = deque()
         self._under_way = {}
-        # By identity: the tasks hold their references as long as this goes on.
+        # By identity, which a reference keeps as long as it is held here; making a parcel of a surface takes a while.
+        references = {id(reference): reference for _, _, reference in tasks}
         self._parcels = {
-            id(reference): parcel_of(self._evaluate, self._case, reference)
-            for reference in {id(reference): reference for _, _, reference in tasks}.values()
+            name: self._parcels.get(name) or (reference, parcel_of(self._evaluate, self._case, reference))
+            for name, reference in references.items()
         }
-        self._finished = finished
+        self._finished, self._begun = finished, begun
         self._results = []
+        if tasks[0][1].level != self._level:
+            self._level, self._typical = tasks[0][1].level, math.inf
         self._looked = time.monotonic()
         try:
             while self._queue or self._suspects or self._under_way:
@@ -169,6 +181,7 @@ class BatchEvaluator:
                     self._workers.look()
                     if not self._control.paused:
                         self._submit()
+                    self._begin()
                     if self._is_due():
                         self._hand_out()
                     self._collect()
@@ -182,11 +195,21 @@ class BatchEvaluator:
         self._hand_out()
         return True
 
+    @property
+    def quick(self) -> bool:
+        """Whether an evaluation takes little enough that a few of them may be lost with the process."""
+        return self._typical < _QUICK
+
     def _is_due(self) -> bool:
         """Whether what has come in is to be handed out now."""
-        return self._typical >= _QUICK or time.monotonic() - self._first_result >= _GATHERING
+        return not self.quick or time.monotonic() - self._first_result >= _GATHERING
+
+    def _begin(self) -> None:
+        begun, self._begun = self._begun, _nothing
+        begun()
 
     def _hand_out(self) -> None:
+        self._begin()
         if self._results:
             results, self._results = self._results, []
             self._finished(results)
@@ -215,7 +238,7 @@ class BatchEvaluator:
         when a spare one begins.
         """
         slots = self._workers.slots
-        return 2 * slots if self._typical < _QUICK and self._workers.blamable else slots
+        return 2 * slots if self.quick and self._workers.blamable else slots
 
     def _start(self, job: _Job) -> bool:
         try:
@@ -250,7 +273,7 @@ class BatchEvaluator:
             self._workers.warm(
                 candidate.level, self._control, warm_up_task, self._warm_up, self._case, candidate.level, job.reference
             )
-        parcel = self._parcels[id(job.reference)]
+        _, parcel = self._parcels[id(job.reference)]
         return self._workers.submit(
             parcel_task, parcel if job.unknown else parcel.label, candidate.variables, candidate.level
         )

@@ -18,7 +18,7 @@ from typing import Any, TypeVar
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.evaluation.levels import FAST, LEVELS, TRUTH, level_of
 from hpsop_core.optimization.generation import Generation
-from hpsop_core.optimization.problem import Candidate, Outcome
+from hpsop_core.optimization.problem import Candidate
 from hpsop_core.optimization.two_level import TwoLevelSearch
 from hpsop_core.runs.batch import BatchEvaluator, reconnect
 from hpsop_core.runs.control import RunControl
@@ -76,6 +76,9 @@ class RunDriver:
         self._ledger = Ledger(variables_text(self._case.initial.variables), store.outcomes())
         self._learning = Learning(store, self._case, physics, self._ledger)
         self._references: dict[int, Any] = {}
+        self._evaluator: BatchEvaluator | None = None
+        self._later: list[Callable[[], None]] = []
+        self._waited = 0.0
         self._noted: set[str] = set()
         self._last_event = 0.0
         self._level2_seconds: float | None = None
@@ -94,7 +97,10 @@ class RunDriver:
         state: State = "failed"
         reason = ""
         try:
-            self._search()
+            try:
+                self._search()
+            finally:
+                self._catch_up()
             state = "finished"
         except _StoppedError:
             state = "stopped"
@@ -147,6 +153,8 @@ class RunDriver:
         self._note_versions()
         self._tell("state", state="running", reason="")
         first, second = (FAST, TRUTH) if settings.level1_generations > 0 else (TRUTH, FAST)
+        # An even first sample takes a second, in which local workers import their solvers.
+        search.ask()
         self._evaluate_initial(first.number, planned=True)
         while True:
             self._extend(search)
@@ -232,14 +240,22 @@ class RunDriver:
             numbers.append(place)
             if is_new and not self._ledger.knows(place):
                 missing.append((place, candidate))
-        self.snapshot = dataclasses.replace(
-            self.snapshot,
-            level=candidates[0].level,
-            population=len(candidates),
-            done=len(candidates) - len(missing),
-            seconds_left=self._seconds_left(search, times),
-        )
-        waited = self._evaluate(missing, number) if missing else 0.0
+
+        def begun() -> None:
+            self._catch_up()
+            self.snapshot = dataclasses.replace(
+                self.snapshot,
+                level=candidates[0].level,
+                population=len(candidates),
+                done=len(candidates) - len(missing),
+                seconds_left=self._seconds_left(search, times),
+            )
+
+        waited = 0.0
+        if missing:
+            waited = self._evaluate(missing, number, begun)
+        else:
+            begun()
         self._ledger.settle(candidates)
         generation = search.tell([self._ledger.outcome(place) for place in numbers])
         self.snapshot = dataclasses.replace(
@@ -251,21 +267,33 @@ class RunDriver:
         stored = self._store.generation(number)
         if stored is not None:
             self._compare(stored, generation)
+            self._catch_up()
             self._progress()
             return
         elapsed = time.monotonic() - started - waited
-        self._keep(lambda: self._store.record_generation(generation, elapsed))
         times.append((generation.level, elapsed))
-        self._tell(
-            "generation",
-            generation,
-            elapsed=self.snapshot.elapsed + elapsed,
-            seconds_left=self._seconds_left(search, times),
-        )
+        seconds_left = self._seconds_left(search, times)
+
+        def keep() -> None:
+            self._keep(lambda: self._store.record_generation(generation, elapsed))
+            self._tell("generation", generation, elapsed=self.snapshot.elapsed + elapsed, seconds_left=seconds_left)
+
+        self._later.append(keep)
+        # Where evaluations are quick, workers get their next designs before this is written; else nothing waits.
+        quick = self._evaluator is not None and self._evaluator.quick
+        if not quick or number == 1 or generation.note or search.finished:
+            self._catch_up()
         if generation.note:
             text = f"generation {number}: {generation.note}"
             self._keep(lambda: self._store.note(text))
             self._tell("handover", generation, text=generation.note)
+
+    def _catch_up(self) -> None:
+        """Write and tell what was put off until the workers have their next designs."""
+        while self._later:
+            # What fails is tried again at the end of the run: no generation without its evaluations.
+            self._later[0]()
+            del self._later[0]
 
     def _number(self, candidate: Candidate) -> tuple[int, bool]:
         """The design's number, and whether it appears for the first time."""
@@ -296,37 +324,48 @@ class RunDriver:
 
     # -- evaluations -----------------------------------------------------------------------------------------------
 
-    def _evaluate(self, missing: list[tuple[int, Candidate]], generation: int) -> float:
-        """Evaluate designs and store each as it finishes; returns the seconds spent waiting for people or disks."""
-        waited = 0.0
+    def _evaluate(
+        self, missing: list[tuple[int, Candidate]], generation: int, begun: Callable[[], None] | None = None
+    ) -> float:
+        """Evaluate designs and store each as it finishes; of quick ones a generation's last wait for ``_catch_up``.
+
+        Args:
+            missing: the designs with their numbers.
+            generation: that asks for them; 0 for the initial design.
+            begun: as of ``BatchEvaluator.run``; ``_catch_up`` by default.
+
+        Returns:
+            Seconds spent waiting for people or disks.
+        """
+        self._waited = 0.0
+        left = len(missing)
 
         def finished(results: Sequence[tuple[int, Candidate, Result]]) -> None:
-            nonlocal waited
-            waited += self._record(results, generation)
+            nonlocal left
+            left -= len(results)
+            self._note_results(results)
+            if generation > 0 and left == 0 and evaluator.quick:
+                self._later.append(lambda: self._record(results, generation))
+            else:
+                self._record(results, generation)
 
         def paused(now: bool) -> None:
-            nonlocal waited
-            waited += -time.monotonic() if now else time.monotonic()
+            self._waited += -time.monotonic() if now else time.monotonic()
             self._change_state("paused" if now else "running", "")
 
         tasks = [(number, candidate, self._reference_of(candidate)) for number, candidate in missing]
-
-        def lost(reason: str) -> None:
-            nonlocal waited
-            waited += -time.monotonic() if reason else time.monotonic()
-            self._lost(reason)
-
         workers = self._ready_workers()
-        evaluator = BatchEvaluator(
-            workers, self._physics.evaluate, self._case, self._control, lost, self._physics.warm_up
+        evaluator = self._evaluator = self._evaluator or BatchEvaluator(
+            workers, self._physics.evaluate, self._case, self._control, self._lost, self._physics.warm_up
         )
-        if not evaluator.run(tasks, finished, paused):
+        if not evaluator.run(tasks, finished, paused, begun or self._catch_up):
             raise _StoppedError
         self._note_workers(workers)
-        return waited
+        return self._waited
 
     def _lost(self, reason: str) -> None:
         """The workers cannot be reached, and "" when they can again."""
+        self._waited += -time.monotonic() if reason else time.monotonic()
         text = f"{reason}; the run goes on when it does, or stop it" if reason else ""
         self._change_state("paused" if reason else "running", text)
 
@@ -340,23 +379,13 @@ class RunDriver:
             )
             self._keep(lambda: self._store.note(text))
 
-    def _record(self, results: Sequence[tuple[int, Candidate, Result]], generation: int) -> float:
-        """Keep what came in together; returns the seconds that the file could not be written."""
-        started = time.monotonic()
-        blocked = False
-
-        def write() -> list[Outcome]:
-            return self._store.record_evaluations(results, generation)
-
-        try:
-            outcomes = write()
-        except StoreUnwritableError as error:
-            blocked = True
-            outcomes = self._keep(write, error)
+    def _note_results(self, results: Sequence[tuple[int, Candidate, Result]]) -> None:
+        """Know what came in together."""
         counts = list(self.snapshot.evaluations)
-        for (number, candidate, _), outcome in zip(results, outcomes, strict=True):
-            self._ledger.record(number, candidate, outcome)
+        for number, candidate, result in results:
+            self._ledger.record(number, candidate, dataclasses.replace(result.outcome, evaluation_id=number))
             counts[LEVELS.index(level_of(candidate.level))] += 1
+        outcomes = [result.outcome for _, _, result in results]
         self.snapshot = dataclasses.replace(
             self.snapshot,
             done=self.snapshot.done + len(outcomes),
@@ -364,11 +393,19 @@ class RunDriver:
             predictions=self.snapshot.predictions + sum(outcome.predicted for outcome in outcomes),
             failures=self.snapshot.failures + sum(outcome.failed for outcome in outcomes),
         )
-        for (number, _, result), outcome in zip(results, outcomes, strict=True):
-            if outcome.failed:
+
+    def _record(self, results: Sequence[tuple[int, Candidate, Result]], generation: int) -> None:
+        """Keep what came in together, and tell of it."""
+        started = time.monotonic()
+        try:
+            self._store.record_evaluations(results, generation)
+        except StoreUnwritableError as error:
+            self._keep(lambda: self._store.record_evaluations(results, generation), error)
+            self._waited += time.monotonic() - started
+        for number, _, result in results:
+            if result.outcome.failed:
                 self._tell("failure", evaluation_id=number, text=f"{result.stage}: {result.reason}")
         self._progress()
-        return time.monotonic() - started if blocked else 0.0
 
     def _evaluate_initial(self, level: int, planned: bool) -> None:
         """The initial design, at both levels, whether or not a population holds it."""
@@ -383,6 +420,7 @@ class RunDriver:
                     raise
                 # No generation needs this level; that it cannot be computed is worth a record, not the run.
                 result = failure(self._case, variables, level, "reference", str(error), 0.0)
+                self._note_results([(level, candidate, result)])
                 self._record([(level, candidate, result)], 0)
             else:
                 self._evaluate([(level, candidate)], 0)
@@ -396,6 +434,7 @@ class RunDriver:
         """What a design is evaluated with: with a surface, what that has learnt too."""
         plain = self._reference(candidate.level)
         if candidate.surface:
+            self._catch_up()  # what is learnt from stands in the file
             return self._learning.reference(candidate.surface, plain, self._keep)
         if candidate.level == FAST.number and candidate.origin != "initial":
             return self._searching
