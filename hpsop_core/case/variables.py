@@ -8,6 +8,7 @@ from __future__ import annotations
 import math
 from collections.abc import Collection, Mapping, Sequence
 from dataclasses import dataclass, fields, replace
+from functools import cached_property
 from typing import Any
 
 import numpy as np
@@ -206,9 +207,11 @@ class DesignVariables(StatedVariables, Proportions):
     @classmethod
     def from_key(cls, key: Sequence[float]) -> DesignVariables:
         """The design of a ``key``; variables declared since the key was stored stand at [initial]'s defaults."""
-        later = [item.initial for item in VARIABLE_TABLE.values()][len(key) :]
-        pairs = zip(VARIABLE_TABLE.items(), [*key, *later], strict=True)
-        named: dict[str, Any] = {name: item.typed(value) for (name, item), value in pairs}
+        if len(key) < len(VARIABLE_NAMES):
+            key = [*key, *(VARIABLE_TABLE[name].initial for name in VARIABLE_NAMES[len(key) :])]
+        named: dict[str, Any] = dict(zip(VARIABLE_NAMES, map(float, key), strict=True))
+        for name in _COUNTED:
+            named[name] = VARIABLE_TABLE[name].typed(named[name])
         return cls(**named)
 
     def replaced(self, changes: Mapping[str, object], where: str = "design variables") -> DesignVariables:
@@ -229,6 +232,7 @@ STANDS_FOR = {"block_coefficient_ratio": "displacement_ratio"}
 """The variable in whose place each stand-in is searched."""
 ON_BOUND = 0.01
 """A variable within this part of its range of a bound stands on it."""
+_COUNTED = tuple(name for name, item in VARIABLE_TABLE.items() if item.whole)
 _BLADE_COUNT = VARIABLE_NAMES.index("blade_count")
 _FULLNESS = VARIABLE_NAMES.index("displacement_ratio")
 
@@ -347,7 +351,7 @@ class DesignSpace:
             raise ValueError("a stand-in means nothing without an initial design; take a case's bounds")
         return self.initial
 
-    @property
+    @cached_property
     def free(self) -> tuple[int, ...]:
         """Indices into ``names`` of the variables that are not fixed."""
         return tuple(i for i, (low, high) in enumerate(zip(self.lower, self.upper, strict=True)) if low < high)
