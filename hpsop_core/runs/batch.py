@@ -90,7 +90,8 @@ class BatchEvaluator:
     * A cluster that does not answer any more: the run is paused with the reason, and goes on when it answers again.
 
     Results are handed out when the workers have their next designs, and quick ones together, a twentieth of a second
-    after the first of them at the latest: a transaction of the run file costs as much as ten records.
+    after the first of them at the latest: a transaction of the run file costs as much as ten records. One evaluator
+    serves a whole run: it knows how long an evaluation takes, and which parcels there are.
 
     Args:
         workers: where to evaluate.
