@@ -46,7 +46,7 @@ def _even_cube(count: int, dimension: int, seed: int) -> Array:
     """A Latin hypercube of the unit cube whose coordinates were exchanged until it was even, shape (count, dimension).
 
     To the bit what ``scipy.stats.qmc.LatinHypercube(dimension, optimization="random-cd").random(count)`` gives of
-    ``rng=numpy.random.default_rng(seed)``, in a sixth of its time and without the second that its import takes: the
+    ``rng=numpy.random.default_rng(seed)``, in a fifth of its time and without the second that its import takes: the
     same exchanges are tried (Jin, Chen and Sudjianto 2005, "An efficient algorithm for constructing optimal design of
     computer experiments", J. Stat. Plan. Inference 134), but what no exchange changed is not computed anew.
     """
