@@ -19,6 +19,7 @@ from typing import Any
 from hpsop_core.runs.records import json_text, named_variables
 
 _RAW_DEFLATE = -15  # without zlib's header and check sum: the record has its own
+_MEMORY = 6  # of zlib's levels: the same bytes as of 8 for an evaluation, and a quarter of the tables to be cleared
 _BREAK = b"\0"
 _LARGEST = 16 * 2**20  # bytes unpacked, a thousand times what an evaluation has: beyond it stands a bomb
 _LARGEST_KEPT = 2**16  # bytes of words whose form is kept
@@ -36,7 +37,7 @@ def pack(essence: bytes, dictionary: bytes) -> bytes:
         essence: of the evaluation.
         dictionary: the run's, the essence of its first evaluation.
     """
-    packer = zlib.compressobj(9, zlib.DEFLATED, _RAW_DEFLATE, zdict=dictionary)
+    packer = zlib.compressobj(9, zlib.DEFLATED, _RAW_DEFLATE, _MEMORY, zdict=dictionary)
     return packer.compress(essence) + packer.flush()
 
 
