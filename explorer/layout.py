@@ -125,16 +125,16 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
             chart = ParetoChart(session, designs, gui, saving)
             Scrubber(session, gui)
             ParetoPicking(session, designs, chart, gui)
-        with tabs["Design"]:
+        with tabs["Design"], session.hub.in_tab("Design"):
             DesignView(session, designs, services.refining, gui)
-        with tabs["Charts"]:
+        with tabs["Charts"], session.hub.in_tab("Charts"):
             scatter = ScatterView(session, designs, gui).tab()
             ChartsView(session, designs, gui, chart_tabs(scatter), saving)
-        with tabs["Table"]:
+        with tabs["Table"], session.hub.in_tab("Table"):
             TableView(session, designs, gui, download)
-        with tabs["Compare"]:
+        with tabs["Compare"], session.hub.in_tab("Compare"):
             CompareView(session, designs, gui)
-        with tabs["What-if"]:
+        with tabs["What-if"], session.hub.in_tab("What-if"):
             WhatIfView(session, services, gui)
         with tabs["Your ship"]:
             ShipView(session, services.ships, services.runs, gui)
@@ -180,6 +180,7 @@ def build_session(session: Session, services: Services, client: viser.ClientHand
 
     session.gestures.on("hello", "", hello)
     session.gestures.on("stands", "", lambda event: scene.begin())
+    session.gestures.on("tabs", "", lambda event: session.hub.tabs_open(event.arg.split("|")))
 
     def size(event: PageEvent) -> None:
         before, narrow = session.dock_width, session.narrow

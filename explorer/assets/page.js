@@ -106,7 +106,7 @@
   // the tour is offered once a browser; where nothing can be kept, not at all
   H.toured = () => { try { return window.localStorage.getItem("hpsop-toured") === "1"; } catch (e) { return true; } };
   H.connect = function (channelId) {
-    if (H.channelId !== channelId) { H.channelId = channelId; H.outbox = []; }
+    if (H.channelId !== channelId) { H.channelId = channelId; H.outbox = []; seen = ""; }
     // a link is followed once: from then on the page goes its own ways, also over a reload
     H.send({ t: "hello", browser: H.browser, width: innerWidth, height: innerHeight, link: location.search.slice(0, 1500), arg: H.toured() || small.matches ? "toured" : "" });
     if (location.search) history.replaceState(null, "", location.pathname);
@@ -143,6 +143,12 @@
       if (open) storage.setItem(key, open.textContent.trim());
     });
   }
+  // which tabs are seen: what stands in the others may come later (explorer/state/hub.py)
+  let seen = "";
+  function tellTabs() {
+    const open = Array.from(document.querySelectorAll('[role=tab][aria-selected="true"]'), (tab) => tab.textContent.trim()).join("|");
+    if (open && open !== seen) H.send({ t: "tabs", arg: (seen = open) });
+  }
   function restoreTabs() {
     if (!storage) return;
     listsOfTabs().forEach(({ tabs, key }) => {
@@ -155,7 +161,7 @@
     });
   }
   ["pointerup", "keyup"].forEach((type) => listen(document, type, (event) => {
-    if (event.target.closest && event.target.closest("[role=tab]")) setTimeout(saveTabs, 120);
+    if (event.target.closest && event.target.closest("[role=tab]")) setTimeout(() => { saveTabs(); tellTabs(); }, 120);
   }, true));
 
   // ---- charts --------------------------------------------------------------------------------------------------
@@ -668,7 +674,7 @@
     const close = notice.querySelector("button");
     if (close && performance.now() - noticed > 8000) close.click();
   }
-  const ticker = setInterval(() => { place(); outlined(); title(); names(); column(); thumbs(); unnotice(); }, 700);
+  const ticker = setInterval(() => { place(); outlined(); title(); names(); column(); thumbs(); unnotice(); tellTabs(); }, 700);
   disposers.push(() => clearInterval(ticker));
   let resizeTimer = null;
   listen(window, "resize", () => {

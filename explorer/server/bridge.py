@@ -38,9 +38,9 @@ class PageEvent:
     """One gesture.
 
     Attributes:
-        kind: hello, stands, size, click, hover, pan, zoom, box, brush, reset, act or key.
+        kind: hello, stands, tabs, size, click, hover, pan, zoom, box, brush, reset, act or key.
         chart: the chart it happened on, or "".
-        name, arg: of a pressed button (kind "act").
+        name, arg: of a pressed button (kind "act"); of kind "tabs" arg names those that are seen, "|" between them.
         key: of the keyboard.
         numbers: numbers of a sensible size by name: x, y in the chart's data, fx, fy in fractions of its plot area; of
             a pan also drag, which tells one drag from the next.

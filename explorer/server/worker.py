@@ -47,18 +47,19 @@ class LatestWorker:
         self._thread = threading.Thread(target=self._loop, name=name, daemon=True)
         self._thread.start()
 
-    def latest(self, key: str, task: Callable[[], None], first: bool = False) -> None:
+    def latest(self, key: str, task: Callable[[], None], first: bool = False, last: bool = False) -> None:
         """Run ``task`` soon; a task that still waits under the same key is forgotten.
 
         Args:
             key: of the waiting slot.
             task: what to do.
             first: before all that waits without it. A task that ran first passes it on to what it asks for.
+            last: among what waits without it, whoever asks.
         """
         with self._condition:
             if self._closed:
                 return
-            first = first or (self._pressed and threading.current_thread() is self._thread)
+            first = not last and (first or (self._pressed and threading.current_thread() is self._thread))
             if first:
                 self._tasks.pop(key, None)
             (self._first if first or key in self._first else self._tasks)[key] = task

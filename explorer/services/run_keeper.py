@@ -96,6 +96,7 @@ class RunKeeper:
         self._closed = threading.Event()
         self._guard = threading.RLock()
         self._known: set[int] = set()
+        self._initials: dict[int, int] = {}
         self._ids = np.zeros(0, dtype=np.int64)
         self._rows = np.zeros((0, 8))
         # by id, as its fronts need them
@@ -324,10 +325,15 @@ class RunKeeper:
         if reader is None:
             return None
         try:
-            found = reader.initial(level).evaluation
+            number = self._initials.get(level)
+            # asked for by every view of a design: looked up once, its errors may still come
+            record = reader.initial(level) if number is None else reader.designs([number])[0]
         except HpsopError:
             return None
-        return found if found.level == level else None
+        if record.evaluation.level != level:
+            return None
+        self._initials[level] = record.id
+        return record.evaluation
 
     def picture(self) -> RunPicture:
         """The run as it is now."""

@@ -9,7 +9,7 @@ from explorer.server.worker import LatestWorker
 
 Handler = Callable[[PageEvent], None]
 # kinds that belong to the page as a whole and not to one of its charts
-_OF_THE_PAGE = ("hello", "size", "key")
+_OF_THE_PAGE = ("hello", "stands", "tabs", "size", "key")
 # of a stream of these only the newest counts
 _STREAMS = ("hover", "pan")
 

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import contextlib
 import threading
-from collections.abc import Callable, Iterable
+from collections.abc import Callable, Iterable, Iterator
 
 from explorer.server.worker import LatestWorker
 
@@ -31,9 +32,22 @@ class Hub:
 
     def __init__(self, worker: LatestWorker) -> None:
         self._worker = worker
-        self._wanted: dict[str, list[tuple[str, Callable[[], None]]]] = {}
+        self._wanted: dict[str, list[tuple[str, Callable[[], None], str]]] = {}
         self._lock = threading.Lock()
         self._serial = 0
+        self._tab = ""
+        self._open: frozenset[str] | None = None
+
+    @contextlib.contextmanager
+    def in_tab(self, title: str) -> Iterator[None]:
+        """Views that are made within stand in the tab of this title."""
+        self._tab = title
+        yield
+        self._tab = ""
+
+    def tabs_open(self, titles: Iterable[str]) -> None:
+        """These tabs are seen, and the others not: their views are drawn when nobody waits for anything."""
+        self._open = frozenset(titles)
 
     def on(
         self,
@@ -53,7 +67,7 @@ class Hub:
         with self._lock:
             self._serial += 1
             for topic in topics:
-                self._wanted.setdefault(topic, []).append((f"view {self._serial}", callback))
+                self._wanted.setdefault(topic, []).append((f"view {self._serial}", callback, self._tab))
 
     def wait_until_drawn(self, timeout: float) -> None:
         """Until all views have drawn what they were told of, ``timeout`` seconds at most."""
@@ -67,6 +81,7 @@ class Hub:
             news: whether nobody has asked for it: a run goes on. Then whatever a person waits for is drawn before.
         """
         with self._lock:
-            called = {key: callback for topic in topics for key, callback in self._wanted.get(topic, [])}
-        for key, callback in called.items():
-            self._worker.latest(key, callback, first=not news)
+            called = {key: (callback, tab) for topic in topics for key, callback, tab in self._wanted.get(topic, [])}
+        for key, (callback, tab) in called.items():
+            unseen = bool(tab) and self._open is not None and tab not in self._open
+            self._worker.latest(key, callback, first=not news and not unseen, last=unseen)

@@ -12,13 +12,16 @@ import dataclasses
 import math
 
 import numpy as np
+from numpy.typing import NDArray
 
 from hpsop_core.case.case import Case
 from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.evaluation.input_widths import form_factor_width, wake_fraction_width
 from hpsop_core.evaluation.levels import TRUTH
-from hpsop_core.evaluation.result import Evaluation, Ok
+from hpsop_core.evaluation.result import Evaluation
 
+# J, KT, 10 KQ of a design's propeller, close together
+_Curves = tuple[NDArray[np.float64], NDArray[np.float64], NDArray[np.float64]]
 WAVE_WIDTHS = ((0.168, 0.186, 0.20, 0.217, 0.27), (1.7e-4, 1.2e-4, 0.8e-4, 1.0e-4, 0.9e-4))
 """Froude numbers, and the half width of the wave coefficient there: medians of 16 designs over the space of dtc-p4119,
 and at the last of 12 over that of dtc-p4119-paper. Nine of ten had less than 2.4e-4 and 1.6e-4 from the second on."""
@@ -36,10 +39,15 @@ def with_stated_errors(case: Case, evaluation: Evaluation) -> Evaluation:
     """
     if not evaluation.ok or evaluation.level != TRUTH.number or evaluation.errors:
         return evaluation
+    # Where designs have errors of their own SciPy's interpolation is not loaded for this.
+    from hpsop_core.evaluation.curves import smooth_open_water
+
+    curves: _Curves | None = None
     errors: dict[str, float] = {}
     burnt = []
     for place, condition in enumerate(evaluation.conditions, 1):
-        widths = _summed(_terms(case, evaluation, condition))
+        curves = curves or smooth_open_water(evaluation.open_water, _CURVE_POINTS)[:3]
+        widths = _summed(_terms(case, curves, condition))
         errors |= {f"{name}_{place}": float(f"{width:.3g}") for name, width in widths.items()}
         if condition.fuel_rate:
             burnt.append((condition.weight * condition.fuel_rate, condition.weight * widths["fuel_rate"]))
@@ -55,10 +63,10 @@ def with_stated_errors(case: Case, evaluation: Evaluation) -> Evaluation:
     return dataclasses.replace(evaluation, errors=errors, errors_source="stated")
 
 
-def _terms(case: Case, evaluation: Ok, condition: ConditionResult) -> list[dict[str, float]]:
+def _terms(case: Case, curves: _Curves, condition: ConditionResult) -> list[dict[str, float]]:
     """Half widths by quantity: of the waves, the propeller's mesh, k and wake."""
     waves = float(np.interp(condition.froude_number, *WAVE_WIDTHS)) / condition.wave_coefficient
-    terms = [_rematched(case, evaluation, condition, waves * condition.wave_resistance)]
+    terms = [_rematched(case, curves, condition, waves * condition.wave_resistance)]
     terms[0] |= {
         "wave_coefficient": waves * condition.wave_coefficient,
         "wave_resistance": waves * condition.wave_resistance,
@@ -69,9 +77,9 @@ def _terms(case: Case, evaluation: Ok, condition: ConditionResult) -> list[dict[
     factor, wake = form_factor_width(case.constants), wake_fraction_width(case.constants)
     if factor is not None:
         form = factor.half_width * condition.friction_resistance
-        terms.append(_rematched(case, evaluation, condition, form) | {"form_resistance": form})
+        terms.append(_rematched(case, curves, condition, form) | {"form_resistance": form})
     if wake is not None:
-        changed = _rematched(case, evaluation, condition, 0.0, wake.half_width)
+        changed = _rematched(case, curves, condition, 0.0, wake.half_width)
         terms.append(changed | {"wake_fraction": wake.half_width})
     return terms
 
@@ -81,13 +89,10 @@ _OF_BRAKE_POWER = ("brake_power", "engine_load", "fuel_rate")
 
 
 def _rematched(
-    case: Case, evaluation: Ok, condition: ConditionResult, resistance: float, wake: float = 0.0
+    case: Case, curves: _Curves, condition: ConditionResult, resistance: float, wake: float = 0.0
 ) -> dict[str, float]:
     """By how much a condition's numbers change with a resistance and a wake fraction added, t as it is."""
-    # Where designs have errors of their own SciPy's interpolation is not loaded for this.
-    from hpsop_core.evaluation.curves import smooth_open_water
-
-    advance, thrust, torque, _ = smooth_open_water(evaluation.open_water, _CURVE_POINTS)
+    advance, thrust, torque = curves
     useful = thrust > 0.0
     advance, thrust, torque = advance[useful], thrust[useful], torque[useful]
     load = thrust / advance**2  # falls with J

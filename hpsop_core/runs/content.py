@@ -31,6 +31,7 @@ class RunContent:
         self._path = path
         self._version = version
         self._sealed = version >= CHECKSUMS_SINCE
+        self._dictionary: bytes | None = None
 
     @property
     def sealed(self) -> bool:
@@ -47,6 +48,8 @@ class RunContent:
         missing = [key for key in (*RUN_KEYS, *(("tally", "open") if self._sealed else ())) if key not in values]
         if missing:
             raise DamagedRunError(self._path, f"it has no '{missing[0]}'")
+        if self._dictionary is None:
+            self._dictionary = bytes.fromhex(values.get("dictionary", ""))
         return values
 
     def rows(
@@ -117,10 +120,14 @@ class RunContent:
         hand = "SELECT count(*) FROM evaluations WHERE origin = 'hand'"
         return Tally({**counts, "hand": int(self._connection.execute(hand).fetchone()[0])})
 
-    @cached_property
+    @property
     def dictionary(self) -> bytes:
-        """What the evaluations are packed with; it is there when an evaluation is."""
-        return bytes.fromhex(self.values()["dictionary"])
+        """What the evaluations are packed with; it is there when an evaluation is, and never changes then."""
+        if self._dictionary is None:
+            self.values()
+        if not self._dictionary:
+            raise KeyError("dictionary")
+        return self._dictionary
 
     def document(self, row: Sequence[Any]) -> dict[str, Any]:
         """The JSON of an evaluation.

@@ -24,6 +24,7 @@ from hpsop_core.runs.content import RunContent
 from hpsop_core.runs.fronts import FrontHistory, KnownFront
 from hpsop_core.runs.lock import is_being_written
 from hpsop_core.runs.records import (
+    ERRORS_KEY,
     ArchivePoint,
     DesignRecord,
     Failure,
@@ -76,6 +77,7 @@ class RunReader:
         self._fronts = FrontHistory(self._points)
         self._status: os.stat_result | None = None
         self._known_errors: dict[str, dict[str, float]] = {}
+        self._errors_text = ""
         self._errors_of: tuple[int, int] | None = None
         with self._reading() as content:
             self._values = content.values()
@@ -301,6 +303,8 @@ class RunReader:
         missing = [number for number in ids if number not in found]
         if missing:
             with self._reading() as content:
+                # as the file is now: the errors of designs are in it too, and need not be looked for again
+                values = content.values()
                 for number in missing:
                     row = None
                     if abs(number) < _BEYOND_ANY_ID:
@@ -310,20 +314,21 @@ class RunReader:
                     record = _record("evaluations", row)
                     evaluation = self._placed(content.document(row))
                     found[number] = DesignRecord(number, record["origin"], record["generation"], evaluation)
+            self._take_errors(values)
             self._designs.update(found)
             # a page that is open for days may look at every design of a run
             for number in list(self._designs)[:-_KEPT_DESIGNS]:
                 self._designs.pop(number, None)
-        errors = self._errors(fresh=bool(missing))
+        errors = self._known_errors if missing else self._errors()
         return tuple(_refined(found[number], errors.get(str(number))) for number in ids)
 
     def comparison_errors(self, ids: Sequence[int]) -> dict[int, Mapping[str, float]]:
         """The errors in a comparison of those designs that were solved finer, by id; nothing else of them is read."""
-        errors = self._errors(fresh=False)
+        errors = self._errors()
         found = {number: errors.get(str(number), {}).get("comparison_errors", {}) for number in ids}
         return {number: widths for number, widths in found.items() if widths}
 
-    def _errors(self, fresh: bool) -> dict[str, dict[str, Any]]:
+    def _errors(self) -> dict[str, dict[str, Any]]:
         """The error fields by the design's id, of designs that were solved finer.
 
         They come when the designs have long been read: looked for again whenever the file was changed.
@@ -333,11 +338,17 @@ class RunReader:
         except OSError:
             return self._known_errors  # what has been read is still known when the file is gone
         changed = (status.st_mtime_ns, status.st_size)
-        if fresh or changed != self._errors_of:
+        if changed != self._errors_of:
             with self._reading() as content:
-                self._known_errors = known_errors(content.values())
+                self._take_errors(content.values())
             self._errors_of = changed
         return self._known_errors
+
+    def _take_errors(self, values: Mapping[str, str]) -> None:
+        text = values.get(ERRORS_KEY, "")
+        # a hundred designs' are 100 kB, and seldom others
+        if text != self._errors_text:
+            self._known_errors, self._errors_text = known_errors(values), text
 
     def _placed(self, document: Mapping[str, Any]) -> Evaluation:
         """An evaluation with the bounds that it stands on, which files of earlier versions do not tell."""

@@ -108,6 +108,36 @@ def test_a_gesture_and_what_follows_from_it_go_before_a_runs_news():
         worker.close()
 
 
+def test_what_nobody_sees_is_drawn_when_nobody_waits():
+    worker = LatestWorker("test")
+    hub, drawn, go_on = Hub(worker), [], threading.Event()
+    try:
+        with hub.in_tab("Table"):
+            hub.on(("selection",), lambda: drawn.append("table"))
+        with hub.in_tab("Charts"):
+            hub.on(("selection",), lambda: drawn.append("charts"))
+        hub.on(("selection",), lambda: drawn.append("card"))
+        hub.changed("selection")
+        assert worker.wait_until_idle(10.0)
+        assert drawn == ["table", "charts", "card"]  # where the browser has not said yet what is seen
+        drawn.clear()
+        hub.tabs_open(["Pareto front", "Charts"])
+
+        def gesture() -> None:
+            # told by the worker itself, as a click's selection is
+            hub.changed("selection")
+            assert go_on.wait(10.0)
+
+        worker.every(gesture, first=True)
+        worker.every(lambda: drawn.append("next click"), first=True)
+        go_on.set()
+        assert worker.wait_until_idle(10.0)
+        assert drawn.index("table") == 3 and set(drawn[:3]) == {"charts", "card", "next click"}
+    finally:
+        go_on.set()
+        worker.close()
+
+
 def test_a_runs_news_leave_a_gestures_answer_the_time_to_reach_the_screen():
     worker = LatestWorker("test", calm=0.5)
     first, done = threading.Event(), []
