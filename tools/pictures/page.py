@@ -22,6 +22,7 @@ from explorer.app import Explorer, demonstration
 from explorer.server.security import free_port
 from explorer.state.run_picture import ACTIVE, FAILED, FINISHED, PAUSED
 from hpsop_core.case.case import load_case
+from hpsop_core.runs.reader import open_run
 from tools.chromium import ARGUMENTS, chromium_program
 
 _HIDE = ".mantine-Notifications-root{display:none!important}"
@@ -49,13 +50,31 @@ _SIZES = {"": (1366, 768), "-large": (1920, 1080)}
 
 
 class Photographer:
-    """One browser page and where its pictures go; ``only`` some of them, or all for None."""
+    """One browser page and where its pictures go.
 
-    def __init__(self, page: Any, folder: Path, suffix: str, only: frozenset[str] | None = None) -> None:
+    Args:
+        page: Playwright's.
+        folder, suffix: of the pictures.
+        only: some of them, or all for None.
+        patience: every rest is that many times as long, for a busy machine.
+    """
+
+    def __init__(
+        self, page: Any, folder: Path, suffix: str, only: frozenset[str] | None = None, patience: float = 1.0
+    ) -> None:
         self._only = only
+        self._patience = patience
         self._page = page
         self._folder = folder
         self._suffix = suffix
+
+    def rest(self, seconds: float) -> None:
+        """Let the page draw."""
+        time.sleep(seconds * self._patience)
+
+    def until(self, selector: str) -> None:
+        """Wait until the page has it."""
+        self._page.wait_for_selector(selector, state="attached", timeout=900_000)
 
     def press(self, action: str, argument: str | None = None, pause: float = 1.0) -> None:
         """Press a button of the page; forced, because a page that software draws is never still."""
@@ -63,16 +82,16 @@ class Photographer:
         button = self._page.locator(f'[data-act="{action}"]{extra}:visible').first
         before = button.get_attribute("aria-pressed")
         button.click(force=True)
-        time.sleep(pause)
+        self.rest(pause)
         if action == "switch" and button.get_attribute("aria-pressed") == before:
             # lost while the page was being drawn
             button.click(force=True)
-            time.sleep(pause)
+            self.rest(pause)
 
     def tab(self, name: str, pause: float = 0.8) -> None:
         """Choose a tab of a panel."""
         self._page.get_by_role("tab", name=name, exact=True).first.click()
-        time.sleep(pause)
+        self.rest(pause)
 
     def button(self, name: str) -> None:
         """Press one of viser's own buttons."""
@@ -119,7 +138,7 @@ class Photographer:
     def resize(self, width: int, height: int) -> None:
         """Another size of the window."""
         self._page.set_viewport_size({"width": width, "height": height})
-        time.sleep(6.0)
+        self.rest(6.0)
 
     def select_front(self, last: bool) -> None:
         """Click the point of the front with the least f2, or f1."""
@@ -129,7 +148,7 @@ class Photographer:
         box = (marks.last if last else marks.first).bounding_box()
         if box is not None:
             self._page.mouse.click(box["x"] + box["width"] / 2, box["y"] + box["height"] / 2)
-            time.sleep(3.0)
+            self.rest(3.0)
 
     def hover_front(self) -> None:
         """Rest on a point of the front."""
@@ -139,7 +158,7 @@ class Photographer:
         found = box.bounding_box()
         if found is not None:
             self._page.mouse.move(found["x"] + found["width"] / 2, found["y"] + found["height"] / 2)
-            time.sleep(1.5)
+            self.rest(1.5)
 
 
 def _wait(condition: Callable[[], bool], seconds: float) -> None:
@@ -155,21 +174,22 @@ def _states_of_a_run(explorer: Explorer, camera: Photographer) -> None:
     camera.take("running")
     camera.press("run_pause")
     _wait(lambda: explorer.state.picture.status == PAUSED, 20.0)
-    time.sleep(1.0)
+    camera.rest(1.0)
     camera.take("paused")
     camera.press("run_resume")
     _wait(lambda: explorer.state.picture.status == FINISHED, 900.0)
-    time.sleep(1.0)
+    camera.rest(1.0)
 
 
 def _begun_and_stopped(explorer: Explorer, camera: Photographer) -> None:
     camera.take("ready")
     camera.press("run_start")
-    _wait(lambda: len(explorer.state.picture.generations) >= 8, 240.0)
+    _wait(lambda: len(explorer.state.picture.generations) >= 8, 900.0)
+    camera.rest(2.0)
     camera.take("running")
     camera.press("run_stop")
     _wait(lambda: explorer.state.picture.status not in ACTIVE, 60.0)
-    time.sleep(2.0)
+    camera.rest(2.0)
 
 
 def _failed_run(explorer: Explorer, camera: Photographer, folder: Path) -> None:
@@ -182,11 +202,11 @@ def _failed_run(explorer: Explorer, camera: Photographer, folder: Path) -> None:
         new.executemany("UPDATE run SET value = ? WHERE key = ?", [("failed", "state"), (reason, "reason")])
     explorer.services.runs.open(copy)
     _wait(lambda: explorer.state.picture.status == FAILED, 20.0)
-    time.sleep(3.0)
+    camera.rest(3.0)
     camera.take("failed")
     explorer.services.runs.open(source)
     _wait(lambda: explorer.state.picture.status == FINISHED, 20.0)
-    time.sleep(2.0)
+    camera.rest(2.0)
 
 
 def _tour(camera: Photographer) -> None:
@@ -210,9 +230,13 @@ def _tour(camera: Photographer) -> None:
     camera.tab("Design space")
 
 
-def _for_the_docs(camera: Photographer) -> None:
+def _for_the_docs(camera: Photographer, compromise: int) -> None:
     """What docs/page.md and the README show."""
-    camera.press("choose", "compromise", 5.0)
+    camera.until('[data-run-status="finished"]')
+    camera.until("svg[data-chart=pareto] path.mark.level2")
+    camera.press("choose", "compromise")
+    camera.until(f'[data-selected="{compromise}"]')
+    camera.rest(5.0)
     camera.take("finished")
     camera.press("pin")
     camera.select_front(last=True)
@@ -238,7 +262,7 @@ def _your_ship(explorer: Explorer, camera: Photographer) -> None:
     camera.tab("Your ship")
     camera.button("Make it the case")
     _wait(lambda: explorer.state.picture.case.initial.length == _SHIP_LENGTH, 60.0)
-    time.sleep(12.0)
+    camera.rest(12.0)
     camera.take("your-ship")
 
 
@@ -280,6 +304,7 @@ def main(argv: Sequence[str] | None = None) -> int:
     parser.add_argument("--dark", action="store_true", help="the dark page")
     parser.add_argument("--docs", action="store_true", help="only the pictures of docs/page.md")
     parser.add_argument("--states", choices=("all", "run", "tour"), default="all")
+    parser.add_argument("--patience", type=float, default=1.0, help="wait that many times as long: a busy machine")
     parser.add_argument("--run", type=Path, default=None, help="photograph this run instead of a small new one")
     arguments = parser.parse_args(argv)
     try:
@@ -306,16 +331,15 @@ def main(argv: Sequence[str] | None = None) -> int:
             page.add_init_script('localStorage.setItem("hpsop-toured", "1")')
             page.goto(explorer.address)
             page.add_style_tag(content=_HIDE)
-            page.wait_for_selector("[data-selected]", state="attached")
-            time.sleep(8.0)
-            camera = Photographer(page, arguments.to, suffix, _DOCS if arguments.docs else None)
+            camera = Photographer(page, arguments.to, suffix, _DOCS if arguments.docs else None, arguments.patience)
+            camera.until("[data-selected]")
+            camera.rest(8.0)
             if arguments.dark:
                 camera.press("switch", "dark", 4.0)
             if arguments.docs:
                 _begun_and_stopped(explorer, camera)
                 explorer.services.runs.open(chosen, read_only=True)
-                time.sleep(6.0)
-                _for_the_docs(camera)
+                _for_the_docs(camera, open_run(chosen).design("compromise").id)
                 _your_ship(explorer, camera)
             elif shown is None:
                 _states_of_a_run(explorer, camera)
