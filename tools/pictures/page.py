@@ -82,11 +82,12 @@ class Photographer:
         button = self._page.locator(f'[data-act="{action}"]{extra}:visible').first
         before = button.get_attribute("aria-pressed")
         button.click(force=True)
+        if action == "switch":
+            _wait(lambda: button.get_attribute("aria-pressed") != before, 10.0 * self._patience)
+            if button.get_attribute("aria-pressed") == before:
+                # lost while the page was being drawn
+                button.click(force=True)
         self.rest(pause)
-        if action == "switch" and button.get_attribute("aria-pressed") == before:
-            # lost while the page was being drawn
-            button.click(force=True)
-            self.rest(pause)
 
     def tab(self, name: str, pause: float = 0.8) -> None:
         """Choose a tab of a panel."""
@@ -243,7 +244,9 @@ def _for_the_docs(camera: Photographer, compromise: int) -> None:
     camera.press("pin")
     camera.press("choose", "compromise", 3.0)
     _scenes(camera)
-    camera.press("switch", "waves", 6.0)
+    camera.press("switch", "waves")
+    camera.until("text=wave elevation")
+    camera.rest(5.0)
     camera.press("switch", "dark", 5.0)
     camera.take("dark")
     camera.press("switch", "dark", 2.0)
@@ -283,9 +286,13 @@ def _scenes(camera: Photographer) -> None:
     camera.press("switch", "ghost", 2.0)
     camera.tab("Charts")
     camera.press("tab", "open_water")
-    camera.press("switch", "waves", 8.0)
+    camera.press("switch", "waves")
+    camera.until("text=wave elevation")
+    camera.rest(7.0)
     camera.take("waves")
-    camera.press("switch", "pressure", 12.0)
+    camera.press("switch", "pressure")
+    camera.until("text=hull pressure")
+    camera.rest(11.0)
     camera.press("camera", "below", 3.0)
     camera.take("pressure")
     camera.press("switch", "waves", 2.0)
