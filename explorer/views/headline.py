@@ -9,6 +9,7 @@ from explorer.state.shown import Shown
 from hpsop_core.case.case import KNOT, Case
 from hpsop_core.case.design_numbers import ConditionResult
 from hpsop_core.evaluation.coverage import KEPT, LIMIT, UNCOVERED, VIOLATED, Standing, standings
+from hpsop_core.evaluation.levels import FAST
 from hpsop_core.evaluation.result import Evaluation
 from hpsop_core.markup import Markup, fill, joined
 from hpsop_core.optimization.families import STATED_ERRORS
@@ -112,6 +113,15 @@ def _speeds(case: Case, before: Evaluation | None, after: Evaluation) -> Markup:
     return fill('<span class="soft">powers of two speeds: {}<br></span>', ", ".join(pairs)) if pairs else Markup("")
 
 
+def _uncalibrated(case: Case, evaluation: Evaluation) -> Markup:
+    """Thin-ship theory alone may give a full stern several times its waves: a power that nobody should read as one."""
+    if evaluation.level != FAST.number or case.constants.wave_calibration != "none":
+        return Markup("")
+    return Markup(
+        '<span class="standing">level 1, not calibrated: powers compare designs, they are no forecast<br></span>'
+    )
+
+
 def headline_card(case: Case, initial: Shown | None, shown: Shown) -> Markup:
     """Power, fuel, CO2, displacement and stability, before and after.
 
@@ -160,7 +170,12 @@ def headline_card(case: Case, initial: Shown | None, shown: Shown) -> Markup:
             )
         )
     said = fill('<span class="soft">{}: not stated by the case<br></span>', ", ".join(missing)) if missing else ""
-    return fill('<table class="headline">{}</table>{}{}', joined(rows), _speeds(case, before, evaluation), said)
+    return fill(
+        '<table class="headline">{}</table>{}{}',
+        joined(rows),
+        _uncalibrated(case, evaluation) + _speeds(case, before, evaluation),
+        said,
+    )
 
 
 def _where(standing: Standing, names: Sequence[str]) -> str:

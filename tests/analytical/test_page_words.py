@@ -177,7 +177,12 @@ def test_the_headline_says_before_and_after_with_the_error(case: Case, answers: 
     change = 100.0 * (after / before - 1.0)
     assert f"{abs(change):.1f} ± 2.0 %" in card
     assert "GM" in card and "not stated by the case" in card
-    assert "powers of two speeds" not in card
+    assert "powers of two speeds" not in card and "not calibrated" not in card
+    # plain thin-ship theory says 599 MW of the paper's initial design, and level 2 132 MW
+    plain = case.replaced("constants", wave_calibration="none")
+    assert "level 1, not calibrated: powers compare designs" in headline_card(plain, None, Shown("Design 7", longer, 7))
+    solved = dataclasses.replace(longer, level=2)
+    assert "not calibrated" not in headline_card(plain, None, Shown("Design 7", solved, 7))
     # at fixed Froude numbers a longer ship sails faster, and its power is of that speed
     froude = case.replaced("conditions", speed="froude")
     first, second = answers.initial(froude, 1), answers.evaluate(froude, longer.variables, 1)
