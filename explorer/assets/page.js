@@ -117,14 +117,17 @@
     [100, 500, 1500].forEach((delay) => setTimeout(restoreTabs, delay));
   };
 
-  // The 3D view was a dot until now (page.css). Once it has its size the ship may come: a change of size waits for whatever
-  // the graphics are at.
+  // The 3D view was a dot until now (page.css). Once its size rests, as the docks take theirs one after the other, the ship
+  // may come: a change of size waits for whatever the graphics are at.
   function stand() {
     document.documentElement.classList.add("hpsop-stands");
     const since = performance.now();
+    let rested = 0, width = 0;
     const wait = setInterval(() => {
-      const canvas = document.querySelector("canvas[data-engine]");
-      if ((!canvas || canvas.width < 100) && performance.now() - since < 5000) return;
+      const canvas = document.querySelector("canvas[data-engine]"), now = canvas ? canvas.width : 0;
+      rested = now > 100 && now === width ? rested + 1 : 0;
+      width = now;
+      if (rested < 5 && performance.now() - since < 5000) return;
       clearInterval(wait);
       H.send({ t: "stands" });
     }, 40);
