@@ -215,6 +215,8 @@ def test_a_terminal_that_is_closed_ends_the_run_in_good_order(tmp_path: Path) ->
     )
     process, terminal = pty.fork()
     if process == 0:
+        # Tests that run under nohup hand on that it is ignored; a program that is started so goes on, as it should.
+        signal.signal(signal.SIGHUP, signal.SIG_DFL)
         os.chdir(tmp_path)
         os.environ["PYTHONPATH"] = str(Path(__file__).resolve().parents[2])
         os.execv(words[0], [*words, "--population", "12", "--workers", "2"])

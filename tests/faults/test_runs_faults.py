@@ -255,7 +255,7 @@ def test_no_process_is_left_behind_on_any_exit(tmp_path: Path, how: signal.Signa
     path = tmp_path / "run.hpsop"
     arguments = [sys.executable, str(HERE / "run_in_process.py"), str(path), "slower", "", "2", "8", "4", "2"]
     environment = {**os.environ, "PYTHONPATH": os.pathsep.join([str(HERE), str(HERE.parents[1])])}
-    process = subprocess.Popen(arguments, env=environment, stderr=subprocess.DEVNULL)
+    process = subprocess.Popen(arguments, env=environment, stderr=subprocess.DEVNULL, preexec_fn=_heeding)
     wait_until(lambda: path.exists() and _progress(path) >= 3)
     family = descendants(process.pid)
     assert len(family) >= 3, "fork server, resource tracker, workers"
@@ -263,6 +263,11 @@ def test_no_process_is_left_behind_on_any_exit(tmp_path: Path, how: signal.Signa
     process.wait(timeout=patience(30.0))
     wait_until(lambda: not any(is_alive(child) for child in family))
     RunStore(path).close()  # and the file is free
+
+
+def _heeding() -> None:
+    """Tests that run under nohup hand on that SIGHUP is ignored."""
+    signal.signal(signal.SIGHUP, signal.SIG_DFL)
 
 
 def _progress(path: Path) -> int:
