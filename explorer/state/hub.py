@@ -42,8 +42,11 @@ class Hub:
     def in_tab(self, title: str) -> Iterator[None]:
         """Views that are made within stand in the tab of this title."""
         self._tab = title
-        yield
-        self._tab = ""
+        try:
+            yield
+        finally:
+            # where a view cannot be made too: what is made after it stands elsewhere
+            self._tab = ""
 
     def tabs_open(self, titles: Iterable[str]) -> None:
         """These tabs are seen, and the others not: their views are drawn when nobody waits for anything."""

@@ -108,6 +108,27 @@ def test_a_gesture_and_what_follows_from_it_go_before_a_runs_news():
         worker.close()
 
 
+def test_a_view_that_cannot_be_made_gives_its_tab_back():
+    worker = LatestWorker("test")
+    hub, drawn, held = Hub(worker), [], threading.Event()
+    try:
+        with pytest.raises(InputError), hub.in_tab("Table"):
+            raise InputError("no such view")
+        hub.on(("selection",), lambda: drawn.append("card"))
+        hub.tabs_open(["Charts"])
+        with hub.in_tab("Charts"):
+            hub.on(("selection",), lambda: drawn.append("charts"))
+        worker.every(lambda: bool(held.wait(60.0)))
+        hub.changed("selection")
+        held.set()
+        assert worker.wait_until_idle(60.0)
+        # not behind what is seen, as if it stood in the closed table
+        assert drawn == ["card", "charts"]
+    finally:
+        held.set()
+        worker.close()
+
+
 def test_what_nobody_sees_is_drawn_when_nobody_waits():
     worker = LatestWorker("test")
     hub, drawn, go_on = Hub(worker), [], threading.Event()
