@@ -111,7 +111,7 @@ class RunControl:
         if name not in self._app.draft.searched() or side not in ("lower", "upper"):
             raise InputError(f"bounds: {place[:40]!r} is no bound")
         try:
-            value = round(float(text) / SEARCH_TABLE[name].scale, 10)
+            value = SEARCH_TABLE[name].from_shown(float(text))
             self._app.change_draft(lambda draft: draft.set_bound(name, side, value))
         except ValueError:
             raise InputError(f"{SEARCH_TABLE[name].symbol}: {text[:20]!r} is no number; write one as 8.2") from None

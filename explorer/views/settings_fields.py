@@ -15,19 +15,29 @@ def variable_label(variable: Variable) -> str:
 
 
 def standing_label(variable: Variable, side: str | None) -> str:
-    """The label of a design's slider: with an arrow where the design stands on its lower or upper bound."""
-    return variable_label(variable) + {None: "", "lower": " ↓", "upper": " ↑"}[side]
+    """A design's slider: the unit of shown numbers, and an arrow where the design stands on a bound."""
+    unit = f" [{variable.unit}]" if variable.unit else ""
+    return variable.symbol + unit + {None: "", "lower": " ↓", "upper": " ↑"}[side]
 
 
 def standing_hint(variable: Variable, side: str | None) -> str:
     """What a slider's hint says, also of the bound that the design stands on."""
-    return variable.rule.meaning + ("" if side is None else f"; this design stands on its {side} bound")
+    unit = "" if variable.unit == variable.rule.unit else f", here in {variable.unit}"
+    return variable.rule.meaning + unit + ("" if side is None else f"; this design stands on its {side} bound")
 
 
 def slider_decimals(variable: Variable, value: float) -> int:
     """Digits after the point of a slider's numbers around an initial design's value."""
-    step = Decimal(repr(variable.step_near(value))).normalize()
-    return max(0, -int(step.as_tuple().exponent))
+    return _digits(variable.step_near(value))
+
+
+def shown_decimals(variable: Variable, value: float) -> int:
+    """The same of a slider that stands at shown numbers."""
+    return _digits(round(variable.shown(variable.step_near(value)), 12))
+
+
+def _digits(step: float) -> int:
+    return max(0, -int(Decimal(repr(step)).normalize().as_tuple().exponent))
 
 
 OPEN_FOLDERS = ("Operating conditions", "Form and objectives")

@@ -54,13 +54,14 @@ def warnings_html(shown: Shown) -> Markup:
         lines.append(
             fill('<p class="standing" data-standing="{}">Stands on: {}.</p>', len(standing), "; ".join(standing))
         )
-    # warnings are plain text of files and terminals, which name a condition by its Froude number
-    plain = (_by_speed(text, shown.evaluation).replace("2 pi Fn^2 L", "2π Fn² L") for text in shown.evaluation.warnings)
-    lines += [fill('<p class="soft">{}</p>', text) for text in plain]
+    lines += [fill('<p class="soft">{}</p>', _written(text, shown.evaluation)) for text in shown.evaluation.warnings]
     return joined(lines)
 
 
-def _by_speed(text: str, evaluation: Evaluation) -> str:
+def _written(text: str, evaluation: Evaluation) -> str:
+    """A warning as the page writes: it is plain text for terminals too, and names a condition by its Froude number."""
+    for plain, sign in (("2 pi Fn^2 L", "2π Fn² L"), (" m2 ", " m² ")):
+        text = text.replace(plain, sign)
     for condition in evaluation.conditions:
         number = condition.froude_number
         text = text.replace(f"Froude number {number:g}:", f"{condition.speed / KNOT:.4g} kn (Fn {number:.4g}):")

@@ -16,8 +16,9 @@ from explorer.state.session import Session
 from explorer.state.shown import Shown
 from explorer.views.chips import NOTHING, box, chip, chips, soft
 from explorer.views.on_display import select_design
-from explorer.views.settings_fields import slider_decimals, standing_hint, standing_label, variable_label
+from explorer.views.settings_fields import shown_decimals, standing_hint, standing_label
 from explorer.views.tables import headline, warnings_html
+from hpsop_core.case.declared_variable import Variable
 from hpsop_core.case.variables import SEARCH_TABLE, VARIABLE_NAMES, DesignVariables
 from hpsop_core.errors import HpsopError, InputError
 from hpsop_core.markup import Markup, fill, joined
@@ -46,10 +47,9 @@ class WhatIfView:
         self._initial = session.picture.case.initial.variables
         for place, (key, value) in zip(VARIABLE_NAMES, self._space.values(self._initial).items(), strict=True):
             variable = SEARCH_TABLE[key]
-            value = variable.typed(value)
-            low, high = (variable.typed(end) for end in variable.reach_near(value))
-            step = variable.typed(variable.step_near(value))
-            slider = gui.add_slider(variable_label(variable), low, high, step, value, hint=variable.rule.meaning)
+            low, high, step = _track(variable, value)
+            label, hint = standing_label(variable, None), standing_hint(variable, None)
+            slider = gui.add_slider(label, low, high, step, variable.typed(variable.shown(value)), hint=hint)
             slider.on_update(self._moved)
             self._sliders[place] = slider
         self._level2 = gui.add_button(_LEVEL2, hint="Rankine panels and blade panels, about a second")
@@ -73,7 +73,8 @@ class WhatIfView:
             clamped = min(max(value, slider.min), slider.max)
             displayed, exact = self._exact.get(place, (math.nan, math.nan))
             # a design does not change by being shown
-            values.append(SEARCH_TABLE[key].typed(exact if clamped == displayed else clamped))
+            variable = SEARCH_TABLE[key]
+            values.append(variable.typed(exact if clamped == displayed else variable.from_shown(clamped)))
         return DesignVariables.from_dict(self._space.design(values).as_dict(), "what-if")
 
     def _reach(self) -> None:
@@ -85,9 +86,8 @@ class WhatIfView:
             return
         for slider, (key, value) in zip(self._sliders.values(), self._space.values(self._initial).items(), strict=True):
             variable = SEARCH_TABLE[key]
-            slider.min, slider.max = (variable.typed(end) for end in variable.reach_near(value))
-            slider.step = variable.typed(variable.step_near(value))
-            slider.precision = slider_decimals(variable, value)
+            slider.min, slider.max, slider.step = _track(variable, value)
+            slider.precision = shown_decimals(variable, value)
 
     def _follow(self) -> None:
         shown = self._session.selected
@@ -100,7 +100,7 @@ class WhatIfView:
             initial = self._space.values(self._initial)
             for (place, slider), (key, number) in zip(self._sliders.items(), values.items(), strict=True):
                 variable = SEARCH_TABLE[key]
-                value = variable.typed(round(number, slider_decimals(variable, initial[key])))
+                value = variable.typed(round(variable.shown(number), shown_decimals(variable, initial[key])))
                 self._exact[place] = (value, number)
                 if value < slider.min:
                     slider.min = value
@@ -242,6 +242,13 @@ class WhatIfView:
         disabled = not (own and self._runs.can_add_by_hand())
         if self._add.disabled != disabled:
             self._add.disabled = disabled
+
+
+def _track(variable: Variable, value: float) -> tuple[float, float, float]:
+    """Ends and step of a slider around an initial design's value, as shown numbers."""
+    low, high = variable.reach_near(value)
+    low, high, step = (round(variable.shown(number), 12) for number in (low, high, variable.step_near(value)))
+    return variable.typed(low), variable.typed(high), variable.typed(step)
 
 
 def _answer(*parts: Markup) -> Markup:

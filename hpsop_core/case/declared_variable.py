@@ -66,6 +66,10 @@ class Variable:
         """Two bounds in ``unit``."""
         return self.shown(pair[0]), self.shown(pair[1])
 
+    def from_shown(self, number: float) -> float:
+        """The number whose shown one is ``number``, without what floats add to its digits."""
+        return round(number / self.scale, 10)
+
     def step_near(self, value: float) -> float:
         """The step of a slider around an initial design's value."""
         return float(10.0 ** math.floor(math.log10(value * _LENGTH_STEP))) if self.step is None else self.step

@@ -137,12 +137,22 @@ def mark_css(shape: str, css: str) -> str:
     return f"{css} {'ring' if shape == 'ring' else 'open' if shape in ('cross', 'plus') else ''}".strip()
 
 
-def message(area: Area, text: str) -> Markup:
-    """Words in the middle, a row a line."""
+def message(area: Area, text: str, style: Style) -> Markup:
+    """Words in the middle, a row a line; a row that is wider than the area goes on in the next."""
     a, b = area.left + area.width / 2, area.top + area.height / 2
+    size = style.letters + 2
+    rows: list[str] = []
+    for line in text.split("\n"):
+        rows.append("")
+        for word in line.split(" "):
+            longer = f"{rows[-1]} {word}".strip()
+            if rows[-1] and text_width(longer, size) > area.width:
+                rows.append(word)
+            else:
+                rows[-1] = longer
     return joined(
         fill('<text x="{:.0f}" y="{:.0f}" text-anchor="middle" class="empty">{}</text>', a, b + 17 * index, escape(row))
-        for index, row in enumerate(text.split("\n"))
+        for index, row in enumerate(rows)
     )
 
 

@@ -297,7 +297,7 @@ class Plot:
     def message(self, text: str, numbers: bool = False) -> None:
         """A word in the middle, for a chart that has nothing to show yet; its axes bear no numbers unless asked to."""
         self._numbers = numbers
-        self._over.append(frame.message(self.area, text))
+        self._over.append(frame.message(self.area, text, self.style))
 
     def without_numbers(self) -> None:
         """No axes, ticks and grid: a drawing whose places say themselves what they are."""

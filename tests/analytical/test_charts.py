@@ -17,7 +17,7 @@ from scipy.stats import spearmanr
 from hpsop_core.charts.axis import Axis, padded, tick_texts, ticks
 from hpsop_core.charts.correlations import correlation_cell, rank_correlation
 from hpsop_core.charts.looks import Look, Published, Sheet
-from hpsop_core.charts.marks import smooth
+from hpsop_core.charts.marks import smooth, text_width
 from hpsop_core.charts.plot import Plot
 from hpsop_core.charts.propulsion import open_water_chart
 from hpsop_core.charts.search import (
@@ -196,6 +196,20 @@ def full_plot() -> Plot:
     plot.text(1.0, 1.0, HOSTILE)
     plot.message(HOSTILE)
     return plot
+
+
+def test_a_message_stays_within_the_axes() -> None:
+    words = "No designs yet.\nPress Start: each generation's front appears here."
+    rows = []
+    for width in (700.0, 350.0):
+        plot = Plot(width, 300.0, Axis("x", (0.0, 1.0)), Axis("y", (0.0, 1.0)))
+        plot.message(words, numbers=True)
+        found = ElementTree.fromstring(plot.file_svg("c")).iter(f"{SVG}text")
+        texts = ["".join(node.itertext()) for node in found if node.get("class") == "empty"]
+        assert " ".join(texts) == words.replace("\n", " ")
+        assert all(text_width(text, SCREEN.letters + 2) <= plot.area.width for text in texts)
+        rows.append(len(texts))
+    assert rows[0] == 2 < rows[1]
 
 
 def test_a_file_is_xml_that_stands_alone():

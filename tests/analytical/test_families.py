@@ -210,6 +210,21 @@ def test_a_what_if_slider_shows_digits_that_mean_something_and_keeps_the_design_
     assert view._variables() == dataclasses.replace(own, draft=14.2)
 
 
+def test_the_what_if_shows_the_shift_of_lcb_in_percent_as_bounds_and_tables_do() -> None:
+    own = dataclasses.replace(CASE.initial.variables, buoyancy_centre_shift=-0.0121)
+    evaluation = evaluate(CASE, own)
+    assert evaluation.ok
+    session = Mock(selected=Shown("whatif", evaluation))
+    session.picture.case = CASE
+    view = WhatIfView(session, Mock(), Mock(add_slider=_slider))
+    slider = view._sliders["buoyancy_centre_shift"]
+    assert (slider.min, slider.max, slider.step, slider.value) == (-2.5, 2.5, 0.05, -1.21)
+    assert slider.label.startswith("ΔLCB/L [%]") and "here in %" in slider.hint
+    assert view._variables() == own
+    slider.value = 0.55
+    assert view._variables() == dataclasses.replace(own, buoyancy_centre_shift=0.0055)
+
+
 def test_a_failed_design_stands_on_nothing() -> None:
     result = evaluate(CASE)
     assert result.ok

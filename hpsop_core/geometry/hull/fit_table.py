@@ -161,7 +161,7 @@ def _flat_ends(parent: ParentHull) -> tuple[str, ...]:
             continue
         x = parent.extent(name)[0 if end == "first" else 1]
         lines.append(
-            f"{parent.name} ends in a flat face of {area:.3g} m2 in the water at x = {x:.4g} m: thin-ship theory "
+            f"the hull ends in a flat face of {area:.3g} m2 in the water at x = {x:.4g} m: thin-ship theory "
             "(level 1) takes no waves from it, and it is no part of the wetted surface"
         )
     return tuple(lines)
