@@ -5,6 +5,7 @@ from __future__ import annotations
 import contextlib
 import threading
 from collections.abc import Callable, Iterable, Iterator
+from dataclasses import dataclass
 
 from explorer.server.worker import LatestWorker
 
@@ -20,6 +21,16 @@ def _told(callback: Callable[[], None], failed: Callable[[BaseException], None])
     return run
 
 
+@dataclass(frozen=True)
+class _Wish:
+    """What one view asked for: its waiting slot, how it is drawn, its tab, and whether it wants a topic just now."""
+
+    key: str
+    callback: Callable[[], None]
+    tab: str
+    now: Callable[[str], bool]
+
+
 class Hub:
     """Tells views that a topic changed.
 
@@ -32,7 +43,7 @@ class Hub:
 
     def __init__(self, worker: LatestWorker) -> None:
         self._worker = worker
-        self._wanted: dict[str, list[tuple[str, Callable[[], None], str]]] = {}
+        self._wanted: dict[str, list[_Wish]] = {}
         self._lock = threading.Lock()
         self._serial = 0
         self._tab = ""
@@ -57,6 +68,7 @@ class Hub:
         topics: Iterable[str],
         callback: Callable[[], None],
         failed: Callable[[BaseException], None] | None = None,
+        now: Callable[[str], bool] = lambda topic: True,
     ) -> None:
         """Call ``callback`` on the worker after any of these topics changed.
 
@@ -64,13 +76,14 @@ class Hub:
             topics: of any number.
             callback: draws a view anew.
             failed: told of what it raises, so that the view can say so instead of what stood there before.
+            now: whether what the view shows just now depends on this topic; asked in the thread of the change.
         """
         if failed is not None:
             callback = _told(callback, failed)
         with self._lock:
             self._serial += 1
             for topic in topics:
-                self._wanted.setdefault(topic, []).append((f"view {self._serial}", callback, self._tab))
+                self._wanted.setdefault(topic, []).append(_Wish(f"view {self._serial}", callback, self._tab, now))
 
     def wait_until_drawn(self, timeout: float) -> None:
         """Until all views have drawn what they were told of, ``timeout`` seconds at most."""
@@ -84,7 +97,8 @@ class Hub:
             news: whether nobody has asked for it: a run goes on. Then whatever a person waits for is drawn before.
         """
         with self._lock:
-            called = {key: (callback, tab) for topic in topics for key, callback, tab in self._wanted.get(topic, [])}
-        for key, (callback, tab) in called.items():
-            unseen = bool(tab) and self._open is not None and tab not in self._open
-            self._worker.latest(key, callback, first=not news and not unseen, last=unseen)
+            wishes = [(topic, wish) for topic in topics for wish in self._wanted.get(topic, [])]
+        called = {wish.key: wish for topic, wish in wishes if wish.now(topic)}
+        for wish in called.values():
+            unseen = bool(wish.tab) and self._open is not None and wish.tab not in self._open
+            self._worker.latest(wish.key, wish.callback, first=not news and not unseen, last=unseen)

@@ -4,7 +4,6 @@ from __future__ import annotations
 
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import dataclass
-from functools import partial
 
 import viser
 
@@ -55,8 +54,9 @@ class ChartsView:
         self._html = Slot(gui)
         self._controls_below = Slot(gui)
         session.gestures.on("act", "tab", self._choose)
-        for topic in sorted({topic for tab in tabs.values() for topic in tab.topics}):
-            session.hub.on((topic,), partial(self._topic, topic), self._html.failed)
+        topics = sorted({topic for tab in tabs.values() for topic in tab.topics})
+        # another run changes most of them at once, and the chart is drawn once
+        session.hub.on(topics, self._draw_again, self._html.failed, now=lambda topic: topic in self._chosen().topics)
         session.hub.on(("tab", "size"), self.draw, self._html.failed)
         self.draw()
 
@@ -81,10 +81,8 @@ class ChartsView:
         save = self._saving.offer([part for part in parts if isinstance(part, Figure)])
         self._html.show(box(fill('<div data-chart-tab="{}">{}</div>', chosen.name, shown(parts)), save))
 
-    def _topic(self, topic: str) -> None:
-        chosen = self._chosen()
-        if topic in chosen.topics:
-            self._draw_chart(chosen)
+    def _draw_again(self) -> None:
+        self._draw_chart(self._chosen())
 
     def _chosen(self) -> ChartTab:
         return self._tabs.get(self._session.tab) or next(iter(self._tabs.values()))

@@ -23,6 +23,7 @@ from explorer.state.draft import Draft
 from explorer.state.hub import Hub
 from explorer.state.run_picture import RunPicture
 from explorer.state.session import Session
+from explorer.views.charts_view import ChartsView, ChartTab
 from explorer.views.on_display import select_design
 from explorer.views.run_control import RunControl
 from explorer.views.run_view import RunView
@@ -30,6 +31,7 @@ from explorer.views.settings_view import SettingsView
 from explorer.views.table_view import TableView
 from hpsop_core.case.case import load_case
 from hpsop_core.errors import InputError
+from hpsop_core.markup import Markup
 from hpsop_core.runs.controller import optimize
 
 
@@ -197,6 +199,27 @@ def test_another_case_is_shown_at_once_and_a_run_that_rests_waits(page: Page, fi
     selected = page.session.selected
     assert selected is not None and selected.kind == "initial"
     assert selected.evaluation.conditions[0].speed == pytest.approx(wanted.speeds[0])
+
+
+def test_a_chart_is_drawn_once_when_another_run_comes(page: Page, finished: tuple[Path, Path]) -> None:
+    page.runs.open(finished[0])
+    drawn, saving, held = [], MagicMock(), threading.Event()
+    saving.offer.return_value = Markup("")
+
+    def tab(name: str, *topics: str) -> ChartTab:
+        return ChartTab(name, name, "run", frozenset(topics), lambda session, _: drawn.append(name) or [])
+
+    tabs = [tab("parallel", "run", "filter", "selection", "scrub"), tab("waves", "curves")]
+    ChartsView(page.session, page.designs, MagicMock(), {item.name: item for item in tabs}, saving)
+    assert page.session.worker.wait_until_idle(60.0)
+    drawn.clear()
+    page.session.worker.every(lambda: bool(held.wait(60.0)), first=True)
+    page.runs.open(finished[1])
+    page.session.hub.changed("curves")
+    held.set()
+    assert page.session.worker.wait_until_idle(60.0)
+    # of the five things that are new with it the chart shows four; what only another chart shows draws nothing
+    assert drawn == ["parallel"]
 
 
 def test_a_table_is_drawn_of_one_picture(
