@@ -10,6 +10,7 @@ from __future__ import annotations
 import contextlib
 import logging
 import threading
+import time
 from collections.abc import Callable
 from concurrent.futures import ThreadPoolExecutor
 
@@ -20,7 +21,8 @@ from explorer.server.worker import LatestWorker
 
 _LOG = logging.getLogger("hpsop.explorer")
 _BUILDERS = 4
-_TIDY_SECONDS = 2.0
+# something has gone for so long before it is tidied away, and so long after that nothing is
+_TIDY_SECONDS, _TIDY_REST = 2.0, 15.0
 
 
 class _Visit:
@@ -66,6 +68,8 @@ class Visitors:
         self._build = build
         self._visits: dict[int, _Visit] = {}
         self._builders = ThreadPoolExecutor(_BUILDERS, thread_name_prefix="visitors")
+        self._closed = threading.Event()
+        self._tidied = -_TIDY_REST
         self._housekeeper = LatestWorker("housekeeper", settle=_TIDY_SECONDS)
         # coroutines run on viser's event loop, one after another
         server.on_client_connect(self._came)
@@ -87,7 +91,13 @@ class Visitors:
 
     def tidy_soon(self) -> None:
         """Give memory back in a moment: something large has gone."""
-        self._housekeeper.latest("tidy", tidy)
+        self._housekeeper.latest("tidy", self._tidy)
+
+    def _tidy(self) -> None:
+        # it stops every thread for a tenth of a second: who comes and goes all the time must not do that as often
+        if not self._closed.wait(max(self._tidied + _TIDY_REST - time.monotonic(), 0.0)):
+            tidy()
+            self._tidied = time.monotonic()
 
     def _make(self, client: viser.ClientHandle, visit: _Visit) -> None:
         if not visit.gone:
@@ -100,5 +110,6 @@ class Visitors:
 
     def close(self) -> None:
         """Build no more."""
+        self._closed.set()
         self._builders.shutdown(wait=False, cancel_futures=True)
         self._housekeeper.close()
