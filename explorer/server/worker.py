@@ -82,6 +82,11 @@ class LatestWorker:
         with self._condition:
             return self._condition.wait_for(lambda: not self._waits() and not self._busy, timeout)
 
+    def wait_until_answered(self, timeout: float) -> None:
+        """Block while a person's gesture waits or is in work, ``timeout`` seconds at most."""
+        with self._condition:
+            self._condition.wait_for(lambda: not self._first and not (self._busy and self._pressed), timeout)
+
     def _waits(self) -> bool:
         return bool(self._first) or bool(self._tasks)
 

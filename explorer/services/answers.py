@@ -26,6 +26,9 @@ from hpsop_core.geometry.hull.lines import HullLine, plan_lines
 _FROUDE_ABOVE = 0.025
 _FROUDE_STEP = {1: 0.004, 2: 0.015}
 
+# hulls whose sections are remembered, 40 kB each; a chart of more would cut them again for ever
+MOST_LINES = 240
+
 
 class Answers:
     """Answers about designs of any case."""
@@ -35,7 +38,7 @@ class Answers:
         self._evaluations: Remembered[Evaluation] = Remembered(400)
         self._refined: Remembered[Evaluation] = Remembered(400)
         self._curves: Remembered[DesignCurves] = Remembered(60)
-        self._lines: Remembered[HullLines] = Remembered(60)
+        self._lines: Remembered[HullLines] = Remembered(MOST_LINES)
         self._plans: Remembered[tuple[HullLine, ...]] = Remembered(24)
 
     def reference(self, case: Case, level: int) -> Reference:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+from collections.abc import Sequence
 from typing import Protocol
 
 import numpy as np
@@ -44,6 +45,9 @@ class DesignSource(Protocol):
     def initial(self, level: int) -> Evaluation | None:
         """The initial design's at a level."""
 
+    def prepare(self, design_ids: Sequence[int]) -> None:
+        """Several designs are about to be asked for: read them at once."""
+
 
 class Designs:
     """Designs of the case on display: those of its run, its initial one, and those of the user's own making.
@@ -84,6 +88,11 @@ class Designs:
         hand = row is not None and bool(picture.by_hand[row])
         label = f"Design {design_id}" + (" (by hand)" if hand else "")
         return self.with_errors(Shown(label, evaluation, design_id, generation, opening=opening))
+
+    def prepare(self, design_ids: Sequence[int]) -> None:
+        """These designs are about to be shown: read at once they cost a tenth of what they cost one after another."""
+        if self._source is not None:
+            self._source.prepare(design_ids)
 
     def initial(self, level: int) -> Shown:
         """The initial design at a level: from the run where it has it, else computed."""

@@ -30,5 +30,8 @@ class Display(Protocol):
     def wait_until_drawn(self, timeout: float) -> None:
         """Until every page has drawn the run, ``timeout`` seconds at most."""
 
+    def make_way(self, timeout: float) -> None:
+        """While any browser's gesture waits for its answer, ``timeout`` seconds at most."""
+
     def tell_all(self, topic: str) -> None:
         """Something that is not in the picture changed: "library"."""

@@ -11,7 +11,7 @@ import dataclasses
 import itertools
 import os
 import threading
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 
 import numpy as np
@@ -55,6 +55,7 @@ _STATES = {
 }
 _POLL_SECONDS = 0.7
 _LARGE = 1000  # designs from which a run's first picture is one of points alone
+_SLICE = 16  # designs that are read between two looks whether something is more urgent: some milliseconds
 _openings = itertools.count(1)
 
 
@@ -309,6 +310,14 @@ class RunKeeper:
         except HpsopError:
             return None
 
+    def prepare(self, design_ids: Sequence[int]) -> None:
+        """Several designs are about to be asked for: read them at once."""
+        reader = self._ensure_reader()
+        if reader is not None:
+            # one that cannot be read is met again when it is asked for by itself
+            with contextlib.suppress(HpsopError):
+                reader.designs(list(design_ids))
+
     def reference(self, level: int) -> Reference | None:
         """What normalises at a level, or None while the run does not have it, or not as this version does."""
         reader = self._ensure_reader()
@@ -420,24 +429,52 @@ class RunKeeper:
         self._points.update((point.id, point) for point in points)
         return np.array([point.id for point in points], dtype=np.int64), np.array([_row(point) for point in points])
 
+    def read_ahead(self, make_way: Callable[[], None]) -> None:
+        """Read what the next picture will need of a large run, while others may ask for pictures or close this.
+
+        Args:
+            make_way: called every few milliseconds: returns when whatever is more urgent has been done.
+        """
+        with self._guard:
+            reader = self._reader
+            if reader is None or self._picture is None or self._picture.columns:
+                return
+        with contextlib.suppress(HpsopError):
+            # what cannot be read is said when the picture is made
+            news = self._decoded(reader, make_way)
+            with self._guard:
+                self._take(news)
+
     def _read_new(self, reader: RunReader) -> None:
-        numbers, rows, table = [], [], []
+        self._take(self._decoded(reader, lambda: None))
+
+    def _decoded(self, reader: RunReader, make_way: Callable[[], None]) -> _News:
+        news = _News()
         for point, evaluation in reader.news(self._complete_until(reader), self._known):
-            numbers.append(point.id)
-            rows.append(_row(point))
+            if len(news.points) % _SLICE == _SLICE - 1:
+                make_way()
+                if self._closed.is_set():
+                    return _News()
             values = (quantity.value(evaluation) for quantity in self._quantities)
-            table.append(np.array([np.nan if value is None else value for value in values], dtype=float))
-            self._points[point.id] = point
-        if not numbers:
+            news.points.append(point)
+            news.table.append(np.array([np.nan if value is None else value for value in values], dtype=float))
+        return news
+
+    def _take(self, news: _News) -> None:
+        # two may have read the same
+        fresh = [index for index, point in enumerate(news.points) if point.id not in self._known]
+        if not fresh:
             return
+        points = [news.points[index] for index in fresh]
         # Not before all of them have been read: a record that cannot be read is met again.
-        self._known.update(numbers)
+        self._known.update(point.id for point in points)
+        self._points.update((point.id, point) for point in points)
         # Fresh arrays each time: a picture that a view still draws from never changes under it.
-        ids = np.concatenate([self._ids, np.array(numbers, dtype=np.int64)])
+        ids = np.concatenate([self._ids, np.array([point.id for point in points], dtype=np.int64)])
         order = np.argsort(ids, kind="stable")
         self._ids = ids[order]
-        self._rows = np.concatenate([self._rows, np.array(rows, dtype=float)])[order]
-        self._table = np.concatenate([self._table, np.array(table)])[order]
+        self._rows = np.concatenate([self._rows, np.array([_row(point) for point in points], dtype=float)])[order]
+        self._table = np.concatenate([self._table, np.array([news.table[index] for index in fresh])])[order]
 
     def _complete_until(self, reader: RunReader) -> int:
         """Ids up to here have all been read: those of finished generations that were pictured before."""
@@ -466,6 +503,14 @@ class RunKeeper:
             # it is this program that holds the file: the run begins or has just ended, and nobody else drives it
             return STOPPED, reason
         return _STATES.get(state, state), reason or self._shape
+
+
+@dataclasses.dataclass
+class _News:
+    """Designs that have been read, and their rows of the table."""
+
+    points: list[ArchivePoint] = dataclasses.field(default_factory=list)
+    table: list[NDArray[np.float64]] = dataclasses.field(default_factory=list)
 
 
 def _row(point: ArchivePoint) -> list[float]:

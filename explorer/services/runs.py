@@ -21,6 +21,8 @@ from hpsop_core.runs.executor import default_workers
 # between two pictures of a run: what eyes need; and on a busy machine a rest of so many times what it took to make and
 # draw the last one, in which a press is answered at once; drawing is waited for so long at most
 _PICTURE_SECONDS, _PICTURE_REST, _DRAWN_SECONDS = 0.25, 3.0, 1.0
+# reading a large run waits for gestures, so long for one and so long for all of them
+_WAY_SECONDS, _PATIENCE_SECONDS = 0.2, 10.0
 # after a browser has said hello its page is put up for so long; who lets no browser come has waited long enough then
 _PUT_UP_SECONDS, _NOBODY_SECONDS = 1.5, 10.0
 
@@ -44,6 +46,7 @@ class Runs:
         self._guard = threading.RLock()
         self._pictures = LatestWorker("pictures")
         self._rested = 0.0
+        self._turned = threading.Event()
         self._standing: tuple[object, ...] = ()
         self._quiet_until = 0.0
         self._awaited = threading.Event()
@@ -147,6 +150,9 @@ class Runs:
             self._library.refuse(keeper.path, str(error))
             raise
         old, self._keeper = self._keeper, keeper
+        # the rest was earned by pictures of another run
+        self._rested = 0.0
+        self._turned.set()
         self._designs.read_from(keeper)
         if old is not None:
             old.close()
@@ -163,13 +169,19 @@ class Runs:
         # A search tells of every evaluation; eyes need a few pictures a second.
         pause = self._rested - time.monotonic()
         if pause > 0.0:
-            time.sleep(pause)
-        began = time.monotonic()
+            self._turned.wait(pause)
+        self._turned.clear()
+        keeper = self._keeper
+        if keeper is None:
+            return
+        # Without the guard: who opens another run need not wait until this one has been read to its end.
+        patience = time.monotonic() + _PATIENCE_SECONDS
+        keeper.read_ahead(lambda: self._display.make_way(min(_WAY_SECONDS, max(patience - time.monotonic(), 0.0))))
         # Under the guard: between a run's picture and its display no other run must come on display.
         with self._guard:
-            keeper = self._keeper
-            if keeper is None:
+            if self._keeper is not keeper:
                 return
+            began = time.monotonic()
             picture = keeper.picture()
             self._display.show_run(picture, self._designs.first)
         self._display.wait_until_drawn(_DRAWN_SECONDS)

@@ -163,10 +163,18 @@ class AppState:
     def wait_until_drawn(self, timeout: float) -> None:
         """Until every page has drawn the run, ``timeout`` seconds at most."""
         give_up = time.monotonic() + timeout
-        with self.lock:
-            hubs = [self.hub, *(watcher.hub for watcher in self.sessions.values())]
-        for hub in hubs:
+        for hub in self._hubs():
             hub.wait_until_drawn(max(give_up - time.monotonic(), 0.0))
+
+    def make_way(self, timeout: float) -> None:
+        """While any browser's gesture waits for its answer, ``timeout`` seconds at most."""
+        give_up = time.monotonic() + timeout
+        for hub in self._hubs():
+            hub.wait_until_answered(max(give_up - time.monotonic(), 0.0))
+
+    def _hubs(self) -> list[Hub]:
+        with self.lock:
+            return [self.hub, *(watcher.hub for watcher in self.sessions.values())]
 
     def ask_to_delete(self, name: str) -> None:
         """Ask whether this run of the library is to be deleted, or no longer for ""."""

@@ -89,6 +89,10 @@ class Hub:
         """Until all views have drawn what they were told of, ``timeout`` seconds at most."""
         self._worker.wait_until_idle(timeout)
 
+    def wait_until_answered(self, timeout: float) -> None:
+        """While a gesture waits or is in work, ``timeout`` seconds at most."""
+        self._worker.wait_until_answered(timeout)
+
     def changed(self, *topics: str, news: bool = False) -> None:
         """Tell; a view that wants several of the topics is called once.
 

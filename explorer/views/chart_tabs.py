@@ -201,6 +201,7 @@ def _failures(session: Session, designs: Designs) -> Drawing:
         done = len(picture.ids)
         return [soft(f"No evaluation failed among {done}." if done else "Nothing evaluated yet.")]
     rows = [Markup("<tr><th>design</th><th>level</th><th>gen.</th><th>stage</th><th>reason</th></tr>")]
+    designs.prepare(ids[-100:])
     for design_id in ids[-100:][::-1]:
         shown = designs.shown(design_id)
         if shown is None:

@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import contextlib
+import time
 from collections.abc import Sequence
 
 from explorer.charts.family_cards import FamilyCard, family_cards
 from explorer.charts.pareto import newest_families
+from explorer.services.answers import MOST_LINES
 from explorer.services.designs import Designs
 from explorer.state.session import Session
 from explorer.views.chips import soft
@@ -13,6 +16,11 @@ from explorer.views.saving import Figure
 from hpsop_core.errors import HpsopError
 from hpsop_core.markup import Markup
 
+# all cards are drawn anew after as many lines as are cut within this time: after each of seventy they would be drawn
+# seventy times, in the thread that answers gestures
+_CUT_SECONDS = 0.4
+# cards beyond stand without a picture; other charts' lines have room beside theirs
+_MOST_PICTURES = MOST_LINES - 40
 _WORDS = (
     "A family is what the error of the numbers cannot tell apart; its member in the middle stands for it, before the "
     "initial design in grey, all at one scale. Press a card to select its design."
@@ -25,7 +33,7 @@ def families(session: Session, designs: Designs) -> Sequence[Figure | Markup]:
     if not cards:
         return [soft("No front yet: its families stand here once a finished generation has a feasible design.")]
     initial = designs.known_lines(designs.case.initial.variables)
-    if initial is None or any(card.lines is None for card in cards):
+    if initial is None or any(card.lines is None for card in cards[:_MOST_PICTURES]):
         session.slow.latest("families", lambda: _cut_next(session, designs))
     selected = session.selected.design_id if session.selected is not None else None
     return [family_cards(cards, initial, selected), soft(_WORDS)]
@@ -34,9 +42,12 @@ def families(session: Session, designs: Designs) -> Sequence[Figure | Markup]:
 def _cards(session: Session, designs: Designs) -> list[FamilyCard]:
     picture = session.picture
     rows, names, _ = newest_families(picture, session.scrubbed)
+    members: dict[int, list[int]] = {}
+    for row, name in zip(rows, names, strict=True):
+        members.setdefault(name, []).append(int(picture.ids[row]))
+    designs.prepare([own[len(own) // 2] for own in members.values()])
     found = []
-    for name in dict.fromkeys(names):
-        own = [int(picture.ids[row]) for row, family in zip(rows, names, strict=True) if family == name]
+    for name, own in members.items():
         design_id = own[len(own) // 2]
         shown = designs.shown(design_id)
         if shown is None or not shown.evaluation.ok:
@@ -49,13 +60,16 @@ def _cards(session: Session, designs: Designs) -> list[FamilyCard]:
 
 
 def _cut_next(session: Session, designs: Designs) -> None:
-    """The first lines that are missing; drawing them asks for the next ones."""
-    wanted = [designs.case.initial.variables, *(card.evaluation.variables for card in _cards(session, designs))]
+    """Some of the lines that are missing; drawing them asks for the next ones."""
+    ends, cut = time.monotonic() + _CUT_SECONDS, False
+    cards = _cards(session, designs)[:_MOST_PICTURES]
+    wanted = [designs.case.initial.variables, *(card.evaluation.variables for card in cards)]
     for variables in wanted:
+        if cut and time.monotonic() > ends:
+            break
         if designs.known_lines(variables) is None:
-            try:
+            with contextlib.suppress(HpsopError):
                 designs.lines(variables)
-            except HpsopError:
-                continue
-            session.curves_ready()
-            return
+                cut = True
+    if cut:
+        session.curves_ready()

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 import shutil
 import threading
+import time
 from collections.abc import Iterator
 from pathlib import Path
 from unittest.mock import MagicMock
@@ -17,6 +18,7 @@ from explorer.server.bridge import PageEvent
 from explorer.server.worker import LatestWorker
 from explorer.services.designs import Designs
 from explorer.services.library import RunLibrary
+from explorer.services.remembered import Remembered
 from explorer.services.runs import Runs
 from explorer.state.app_state import AppState
 from explorer.state.draft import Draft
@@ -24,6 +26,7 @@ from explorer.state.hub import Hub
 from explorer.state.run_picture import RunPicture
 from explorer.state.session import Session
 from explorer.views.charts_view import ChartsView, ChartTab
+from explorer.views.families import families
 from explorer.views.on_display import select_design
 from explorer.views.run_control import RunControl
 from explorer.views.run_view import RunView
@@ -33,6 +36,7 @@ from hpsop_core.case.case import load_case
 from hpsop_core.errors import InputError
 from hpsop_core.markup import Markup
 from hpsop_core.runs.controller import optimize
+from hpsop_core.runs.reader import RunReader
 
 
 class Page:
@@ -102,6 +106,34 @@ def test_late_news_of_the_run_before_does_not_come_back(
     thread.join(60.0)
     assert page.runs._pictures.wait_until_idle(60.0)
     assert page.state.picture.name == "second.hpsop"
+
+
+def test_another_run_need_not_wait_until_a_large_one_has_been_read(
+    page: Page, finished: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Its numbers give way to whoever is waited for, and are given up once nobody will see them."""
+    monkeypatch.setattr("explorer.services.run_keeper._LARGE", 5)
+    monkeypatch.setattr("explorer.services.run_keeper._SLICE", 2)
+    reading, answered, read = threading.Event(), threading.Event(), []
+    decode = RunReader.news
+
+    def slow(reader: RunReader, *arguments: object) -> Iterator[object]:
+        for item in decode(reader, *arguments):  # type: ignore[arg-type]
+            read.append(reader.path)
+            reading.set()
+            yield item
+
+    monkeypatch.setattr(RunReader, "news", slow)
+    page.session.worker.every(lambda: bool(reading.wait(60.0) and answered.wait(60.0)), first=True)
+    page.runs._rested = time.monotonic() + 3600.0  # as after a run whose pictures took long
+    page.runs.open(finished[0])
+    assert reading.wait(60.0)
+    page.runs.open(finished[1])
+    assert page.state.picture.opening == page.runs._keeper.opening  # type: ignore[union-attr]
+    assert len(read) <= 4, "reading went on under a gesture"
+    answered.set()
+    assert page.runs._pictures.wait_until_idle(60.0)
+    assert read.count(finished[0]) < 10 < len(page.state.picture.ids)
 
 
 def test_a_click_on_the_run_before_selects_nothing_in_the_next(page: Page, finished: tuple[Path, Path]) -> None:
@@ -220,6 +252,30 @@ def test_a_chart_is_drawn_once_when_another_run_comes(page: Page, finished: tupl
     assert page.session.worker.wait_until_idle(60.0)
     # of the five things that are new with it the chart shows four; what only another chart shows draws nothing
     assert drawn == ["parallel"]
+
+
+def test_more_families_than_lines_are_remembered_are_drawn_and_that_is_all(
+    page: Page, finished: tuple[Path, Path], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Cutting those that had been forgotten again forgot others, and so on for as long as the page stood."""
+    remembered = 4
+    monkeypatch.setattr(page.designs._answers, "_lines", Remembered(remembered))
+    monkeypatch.setattr("explorer.views.families._MOST_PICTURES", remembered - 1, raising=False)
+    page.runs.open(finished[0])
+    drawn: list[int] = []
+
+    def draw() -> None:
+        parts = families(page.session, page.designs)
+        drawn.append(str(parts[0]).count("<button"))
+
+    page.session.hub.on(("curves",), draw)
+    page.session.hub.changed("curves")
+    wait_until(lambda: page.designs.known_lines(page.designs.case.initial.variables) is not None)
+    time.sleep(2.0)
+    assert drawn[-1] > remembered
+    before = len(drawn)
+    time.sleep(2.0)
+    assert len(drawn) == before
 
 
 def test_a_table_is_drawn_of_one_picture(
