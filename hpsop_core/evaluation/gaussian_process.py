@@ -13,16 +13,18 @@ from dataclasses import dataclass
 
 import numpy as np
 from scipy.linalg import LinAlgError, cho_factor, cho_solve, solve_triangular
+from scipy.linalg.lapack import dpotrf, dpotri
 from scipy.optimize import minimize
 
 from hpsop_core.one_thread import one_blas_thread
-from hpsop_core.typing_aliases import Array
+from hpsop_core.typing_aliases import Array, IntArray
 
 # Length scales in units of the data's range, nugget in units of the variance.
 _SCALES = (0.05, 50.0)
 _NUGGETS = (1e-10, 1e-2)
 _STARTS = ((0.6, 1e-6), (2.5, 1e-7))
 _STEPS = 80
+_GAIN = 1e-7  # of the likelihood in a step, as a part of itself, below which a kernel is found
 _SQRT5 = math.sqrt(5.0)
 
 
@@ -83,7 +85,7 @@ def fit(inputs: Array, outputs: Array) -> GaussianProcess | None:
     data = _Data.of(inputs, outputs)
     if data is None:
         return None
-    squares = (data.points[:, None, :] - data.points[None, :, :]) ** 2
+    pairs = _Pairs.of(data.points)
     dimensions = data.points.shape[1]
     bounds = [tuple(np.log(_SCALES))] * dimensions + [tuple(np.log(_NUGGETS))]
     best: tuple[float, Array] | None = None
@@ -92,11 +94,11 @@ def fit(inputs: Array, outputs: Array) -> GaussianProcess | None:
         found = minimize(
             _loss,
             start,
-            (squares, data.normal),
+            (pairs, data.normal),
             jac=True,
             method="L-BFGS-B",
             bounds=bounds,
-            options={"maxiter": _STEPS},
+            options={"maxiter": _STEPS, "ftol": _GAIN},
         )
         if np.isfinite(found.fun) and (best is None or found.fun < best[0]):
             best = float(found.fun), found.x
@@ -185,23 +187,44 @@ def _concentrated(factor: tuple[Array, bool], values: Array) -> tuple[Array, Arr
     return np.asarray(mean), np.asarray(weights), np.maximum(variance, 1e-300)
 
 
-def _loss(logarithms: Array, squares: Array, values: Array) -> tuple[float, Array]:
+@dataclass(frozen=True, eq=False)
+class _Pairs:
+    """The pairs of points, each once: a matrix of correlations is symmetric, and its parts are summed over them.
+
+    Attributes:
+        rows, columns: (p,) the points of each pair, the later one first: places below the diagonal.
+        squares: (p, d) of their distance in each input.
+    """
+
+    rows: IntArray
+    columns: IntArray
+    squares: Array
+
+    @classmethod
+    def of(cls, points: Array) -> _Pairs:
+        rows, columns = np.tril_indices(len(points), -1)
+        return cls(rows, columns, (points[rows] - points[columns]) ** 2)
+
+
+def _loss(logarithms: Array, pairs: _Pairs, values: Array) -> tuple[float, Array]:
     """Minus the concentrated log likelihood of all outputs, and its gradient."""
     scales, nugget = np.exp(logarithms[:-1]), float(np.exp(logarithms[-1]))
     count, outputs = values.shape
-    distance = np.sqrt(squares @ scales**-2)
-    decay = np.exp(-_SQRT5 * distance)
-    matrix = (1.0 + _SQRT5 * distance + 5.0 / 3.0 * distance**2) * decay
-    try:
-        factor = cho_factor(matrix + nugget * np.eye(count), lower=True, check_finite=False)
-    except LinAlgError:
+    distance = _SQRT5 * np.sqrt(pairs.squares @ scales**-2)
+    decay = np.exp(-distance)
+    # Below the diagonal alone, as LAPACK reads and writes it.
+    matrix = np.zeros((count, count), order="F")
+    matrix[pairs.rows, pairs.columns] = (1.0 + distance + distance**2 / 3.0) * decay
+    np.fill_diagonal(matrix, 1.0 + nugget)
+    lower, failed = dpotrf(matrix, lower=True, overwrite_a=True)
+    if failed:
         return 1e12, np.zeros_like(logarithms)
-    _, weights, variance = _concentrated(factor, values)
-    inverse = cho_solve(factor, np.eye(count), check_finite=False)
-    determinant = 2.0 * float(np.sum(np.log(np.diag(factor[0]))))
+    _, weights, variance = _concentrated((lower, True), values)
+    determinant = 2.0 * float(np.sum(np.log(np.diag(lower))))
     loss = 0.5 * count * float(np.sum(np.log(variance))) + 0.5 * outputs * determinant
     # d loss / d matrix; the change of a correlation with its distance is -5/3 r (1 + sqrt 5 r) exp(-sqrt 5 r) dr.
-    slope = 0.5 * outputs * inverse - 0.5 * (weights / variance) @ weights.T
-    by_square = slope * (5.0 / 3.0 * (1.0 + _SQRT5 * distance) * decay)
-    gradient = np.einsum("ij,ijk->k", by_square, squares) * scales**-2
-    return loss, np.append(gradient, nugget * np.trace(slope))
+    inverse, _ = dpotri(lower, lower=True, overwrite_c=True)
+    slope = outputs * inverse - (weights / variance) @ weights.T
+    by_square = slope[pairs.rows, pairs.columns] * (5.0 / 3.0 * (1.0 + distance) * decay)
+    gradient = (by_square @ pairs.squares) * scales**-2
+    return loss, np.append(gradient, 0.5 * nugget * float(np.trace(slope)))

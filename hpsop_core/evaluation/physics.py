@@ -46,7 +46,7 @@ from hpsop_core.evaluation.propeller_answer import (
 from hpsop_core.evaluation.propeller_tables import PropellerTables
 from hpsop_core.evaluation.shapes import initial_volume
 from hpsop_core.evaluation.ship import Loading, loading
-from hpsop_core.evaluation.surface import Surface
+from hpsop_core.evaluation.surface import Surface, Told
 from hpsop_core.evaluation.wave_correction import WaveCorrection, learn_correction, own_froude_numbers
 from hpsop_core.geometry.clearance import baseline_clearance, propeller_clearance
 from hpsop_core.geometry.hull.hull import Hull
@@ -185,23 +185,45 @@ def compute(
     froude_numbers = own_froude_numbers(case, hull, basis.speeds)
     propeller_key = propeller_variables(case.propeller, variables)
     assembled = partial(_assembled, case, variables, level, basis, froude_numbers, hull)
-    told = None if surface is None else surface.answers(hull, variables, froude_numbers, propeller_key)
-    if surface is not None and told is not None:
-        waves, answer = told
+    if surface is not None:
+        # What it says may fail for want of thrust: then it is the solvers that say so.
         with contextlib.suppress(SolverFailure):
-            guess = assembled(waves, answer, predicted=True)
-            if case.constraints.back_cavitation_limit is None:
+            told = surface.answers(hull, variables, froude_numbers, propeller_key)
+            guess = _predicted(case, variables, level, surface, told, assembled)
+            if guess is not None:
                 return guess
-            conditions = surface.back_told(case, variables, guess.numbers.conditions)
-            if conditions is not None:
-                return replace(guess, numbers=replace(guess.numbers, conditions=conditions))
-            # Near to the limit it is the pressures themselves that decide.
-            answer = propeller_answer(propeller_key, level, blade_drag(case.constants))
-            return assembled(waves, answer, predicted=True)
     tabulated = None if propellers is None else propellers.answer(propeller_key)
     answer = tabulated or propeller_answer(propeller_key, level, blade_drag(case.constants))
     physics = assembled(wave_answers(hull_key, level, froude_numbers), answer)
     return replace(physics, propeller_tabulated=tabulated is not None)
+
+
+def _predicted(
+    case: Case,
+    variables: DesignVariables,
+    level: int,
+    surface: Surface,
+    told: Told | None,
+    assembled: Callable[..., Physics],
+) -> Physics | None:
+    """A design's physics as a surface tells it; None where it is in doubt.
+
+    Raises:
+        SolverFailure: the design fails, if the surface is right.
+    """
+    if told is None:
+        return None
+    guess = assembled(told.waves, told.propeller, predicted=True)
+    if not told.is_sure(guess.numbers.conditions):
+        return None
+    if case.constraints.back_cavitation_limit is None:
+        return guess
+    conditions = surface.back_told(case, variables, guess.numbers.conditions)
+    if conditions is not None:
+        return replace(guess, numbers=replace(guess.numbers, conditions=conditions))
+    # Near to the limit it is the pressures themselves that decide.
+    key = propeller_variables(case.propeller, variables)
+    return assembled(told.waves, propeller_answer(key, level, blade_drag(case.constants)), predicted=True)
 
 
 @dataclass(frozen=True)

@@ -98,7 +98,7 @@ def searching(case: Case, reference: Reference) -> Reference:
 
 
 def learnt(
-    case: Case, reference: Reference, evaluations: Sequence[Mapping[str, Any]]
+    case: Case, reference: Reference, evaluations: Sequence[Mapping[str, Any]], fast: Reference | None = None
 ) -> tuple[Reference, Mapping[str, float]]:
     """The reference with a surface learnt from solved designs, and the surface's error; without where they are too few.
 
@@ -106,8 +106,10 @@ def learnt(
         case: what is optimised.
         reference: of the true level.
         evaluations: as ``surface.learn`` takes them.
+        fast: level 1's, where there is one: the hulls that taught it are learnt from too.
     """
-    surface = learn(case, evaluations)
+    correction = None if fast is None else fast.basis.correction
+    surface = learn(case, evaluations, () if correction is None else correction.solved_hulls())
     if surface is None:
         return replace(reference, surface=None), {}
     return replace(reference, surface=surface), asdict(surface.held_out)

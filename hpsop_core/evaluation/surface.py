@@ -3,9 +3,9 @@
 In non-dimensional form the waves of a hull depend on few numbers: its proportions, its block coefficient, the place of
 its centre of buoyancy and the Froude number. The logarithm of the wave coefficient is regressed over these, a condition
 apart, and KT and KQ at the nodes of the open-water curve over the propeller's variables; hydrostatics, wetted surface,
-friction and all that follows from resistance and curves are computed as ever. Each regression says how little it knows
-of a design: where that is more than the doubts below, and for a clipped form, it does not answer and the solvers are
-asked.
+friction and all that follows from resistance and curves are computed as ever. Where level 1 was taught by hulls that
+level 2 solved, their waves are learnt from too. Each regression says how little it knows of a design: where that is
+more than the doubts below, and for a clipped form, it does not answer and the solvers are asked.
 """
 
 from __future__ import annotations
@@ -37,9 +37,13 @@ from hpsop_core.geometry.hull.hull import Hull
 from hpsop_core.hydro.operating_point import PropellerCurve
 from hpsop_core.typing_aliases import Array
 
-WAVE_DOUBT = 0.005
-"""Standard deviation of a wave coefficient, as a part of itself, above which a design is solved: waves are 5 to 30 % of
-the total resistance, so that three deviations are at most half a per cent of it."""
+RESISTANCE_DOUBT = 0.005 / 4.0
+"""Standard deviation of the total resistance at a condition, as a part of it, above which a design is solved: half a
+per cent, the most that a prediction may be off, is four of them, for a regression may be too sure of itself."""
+
+WAVE_DOUBT = 0.05
+"""The same of a wave coefficient, as a part of itself, however little the waves matter: far from what it knows a
+regression does not know how little."""
 
 PROPELLER_DOUBT = 0.002
 """The same of KT and KQ at a node, as a part of their root mean square over the curve."""
@@ -81,6 +85,28 @@ class HeldOut:
     greatest_back_share: float = 0.0
 
 
+@dataclass(frozen=True)
+class Told:
+    """What a surface says of a design.
+
+    Attributes:
+        waves: at the conditions.
+        deviations: standard deviation of each wave coefficient, as a part of it.
+        propeller: open-water curves.
+    """
+
+    waves: tuple[WaveAnswer, ...]
+    deviations: tuple[float, ...]
+    propeller: PropellerAnswer
+
+    def is_sure(self, conditions: Sequence[ConditionResult]) -> bool:
+        """Whether the waves leave little enough doubt of the resistance that came of them."""
+        return all(
+            deviation * condition.wave_resistance <= RESISTANCE_DOUBT * condition.total_resistance
+            for deviation, condition in zip(self.deviations, conditions, strict=True)
+        )
+
+
 @dataclass(frozen=True, eq=False)
 class Surface:
     """What has been learnt; picklable.
@@ -105,7 +131,7 @@ class Surface:
         variables: DesignVariables,
         froude_numbers: Sequence[float],
         propeller: PropellerVariables,
-    ) -> tuple[tuple[WaveAnswer, ...], PropellerAnswer] | None:
+    ) -> Told | None:
         """Waves at the conditions and open-water curves; None where any of it is in doubt: solved is a whole design."""
         if hull.clipped:
             return None
@@ -113,14 +139,16 @@ class Surface:
         for part, scale in zip(np.split(doubt, 2), self.propeller_scale, strict=True):
             if float(np.max(part)) > PROPELLER_DOUBT * scale:
                 return None
-        answers = []
+        answers, deviations = [], []
         for regression, froude in zip(self.waves, froude_numbers, strict=True):
             logarithm, spread = regression.predict(hull_inputs(hull, variables, froude))
             if float(spread[0]) > WAVE_DOUBT:
                 return None
             answers.append(WaveAnswer(math.exp(float(logarithm[0]))))
+            deviations.append(float(spread[0]))
         thrust, torque = np.split(curve, 2)
-        return tuple(answers), PropellerAnswer(PropellerCurve(curve_nodes(), thrust, torque), None)
+        answer = PropellerAnswer(PropellerCurve(curve_nodes(), thrust, torque), None)
+        return Told(tuple(answers), tuple(deviations), answer)
 
     def back_told(
         self, case: Case, variables: DesignVariables, conditions: Sequence[ConditionResult]
@@ -129,13 +157,17 @@ class Surface:
         return None if self.back is None else self.back.told(case, variables, conditions)
 
 
-def learn(case: Case, evaluations: Sequence[Mapping[str, Any]]) -> Surface | None:
+def learn(
+    case: Case, evaluations: Sequence[Mapping[str, Any]], hulls: Sequence[tuple[Array, Array]] = ()
+) -> Surface | None:
     """Learn from solved designs of a case.
 
     Args:
         case: what is optimised.
         evaluations: JSON documents of the true level in a fixed order, on which the last bits depend; failed, predicted
             and clipped ones are left out.
+        hulls: further ones whose waves are known, a condition apart: (n, numbers) of ``hull_inputs`` and (n,) ln of the
+            wave coefficient.
 
     Returns:
         The surface; None where there are too few designs, or a condition without waves.
@@ -147,16 +179,20 @@ def learn(case: Case, evaluations: Sequence[Mapping[str, Any]]) -> Surface | Non
         return None
     waves, errors, sure = [], [], np.full(len(used), True)
     for place in range(len(case.conditions.weights)):
-        points = [data["conditions"][place] for data in used]
-        inputs = [_solved_inputs(data, place) for data in used]
+        points = [document["conditions"][place] for document in used]
+        inputs = [_solved_inputs(document, place) for document in used]
         own = [[point["wave_coefficient"] / point["wave_calibration"]] for point in points]
-        regression = fit(np.array(inputs), np.log(own))
+        data = np.array(inputs), np.log(own)
+        if hulls:
+            data = np.vstack([data[0], hulls[place][0]]), np.vstack([data[1], hulls[place][1][:, None]])
+        regression = fit(*data)
         if regression is None:
             return None
         waves.append(regression)
-        shares = [point["wave_resistance"] / point["total_resistance"] for point in points]
-        errors.append(regression.held_out[:, 0] * np.array(shares))
-        sure &= regression.held_out_deviation[:, 0] <= WAVE_DOUBT
+        shares = np.array([point["wave_resistance"] / point["total_resistance"] for point in points])
+        errors.append(regression.held_out[: len(used), 0] * shares)
+        deviation = regression.held_out_deviation[: len(used), 0]
+        sure &= (deviation <= WAVE_DOUBT) & (deviation * shares <= RESISTANCE_DOUBT)
     designs = [DesignVariables.from_dict(data["variables"]) for data in used]
     keys = [_propeller_inputs(propeller_variables(case.propeller, design)) for design in designs]
     curves = np.array([_node_values(data["open_water"]) for data in used])

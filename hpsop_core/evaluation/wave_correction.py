@@ -24,6 +24,7 @@ from hpsop_core.evaluation.hull_answer import build_hull, hull_variables, wave_a
 from hpsop_core.evaluation.levels import FAST, TRUTH
 from hpsop_core.evaluation.surface import hull_inputs
 from hpsop_core.geometry.hull.hull import Hull
+from hpsop_core.typing_aliases import Array
 
 _TRIED = 16  # designs of the space that are looked at for each whose form carries what is asked
 _BEYOND = 0.2  # of the logarithm: never further beyond what was learnt
@@ -38,6 +39,7 @@ class WaveCorrection:
     Attributes:
         inputs: (conditions, hulls, numbers) of ``hull_inputs``.
         logarithms: (conditions, hulls) ln of level 2's wave coefficient over level 1's.
+        true_waves: (conditions, hulls) ln of level 2's wave coefficient; empty in files of earlier versions.
         kernels: (conditions, numbers + 1) length scales and nugget of each regression where they have been found
             before, as in the shipped cases' files; empty where each process finds them: a third of a second.
     """
@@ -45,6 +47,7 @@ class WaveCorrection:
     inputs: tuple[Rows, ...]
     logarithms: Rows
     kernels: Rows = ()
+    true_waves: Rows = ()
 
     def __hash__(self) -> int:
         # Asked for at every evaluation; the inputs, ten times as many numbers, tell nothing apart that these do not.
@@ -54,12 +57,17 @@ class WaveCorrection:
     def from_dict(cls, data: Mapping[str, Any]) -> WaveCorrection:
         """What ``dataclasses.asdict`` described, from JSON."""
         inputs = tuple(tuple(tuple(row) for row in rows) for rows in data["inputs"])
-        return cls(inputs, *(tuple(tuple(row) for row in data.get(name, ())) for name in ("logarithms", "kernels")))
+        rest = ("logarithms", "kernels", "true_waves")
+        return cls(inputs, *(tuple(tuple(row) for row in data.get(name, ())) for name in rest))
 
     def with_kernels(self) -> WaveCorrection:
         """The same with the kernels of its regressions."""
         found = (tuple(map(float, (*regression.scales, regression.nugget))) for regression in _fitted(self))
         return dataclasses.replace(self, kernels=tuple(found))
+
+    def solved_hulls(self) -> tuple[tuple[Array, Array], ...]:
+        """What level 2 said of the hulls, as ``surface.learn`` takes it; nothing where that was not kept."""
+        return tuple((np.array(rows), np.array(logs)) for rows, logs in zip(self.inputs, self.true_waves, strict=False))
 
     def factors(self, hull: Hull, variables: DesignVariables, froude_numbers: Sequence[float]) -> tuple[float, ...]:
         """The factor on level 1's wave resistance at each condition's Froude number."""
@@ -106,6 +114,7 @@ def learn_correction(case: Case, displaced_volume: float, speeds: Sequence[float
     conditions = len(case.froude_numbers)
     inputs: list[list[tuple[float, ...]]] = [[] for _ in range(conditions)]
     logarithms: list[list[float]] = [[] for _ in range(conditions)]
+    true_waves: list[list[float]] = [[] for _ in range(conditions)]
     for design in dict.fromkeys(designs):
         if len(logarithms[0]) > hulls:
             break
@@ -121,15 +130,17 @@ def learn_correction(case: Case, displaced_volume: float, speeds: Sequence[float
         ratios = [two.wave_coefficient / one.wave_coefficient for one, two in zip(fast, true, strict=True)]
         if min(ratios) <= 0.0:
             continue
-        for place, (froude, ratio) in enumerate(zip(froude_numbers, ratios, strict=True)):
+        for place, (froude, ratio, answer) in enumerate(zip(froude_numbers, ratios, true, strict=True)):
             inputs[place].append(tuple(map(float, hull_inputs(hull, design, froude))))
             logarithms[place].append(float(np.log(ratio)))
+            true_waves[place].append(float(np.log(answer.wave_coefficient)))
     if len(logarithms[0]) <= hulls // 2:
         raise SolverFailure(
             "wave_calibration",
             f"only {len(logarithms[0])} hulls of the space can be solved to learn from; set wave_calibration = level2",
         )
-    return WaveCorrection(tuple(map(tuple, inputs)), tuple(map(tuple, logarithms)))
+    rows = (tuple(map(tuple, values)) for values in (logarithms, true_waves))
+    return WaveCorrection(tuple(map(tuple, inputs)), next(rows), true_waves=next(rows))
 
 
 def own_froude_numbers(case: Case, hull: Hull, speeds: Sequence[float]) -> tuple[float, ...]:

@@ -35,12 +35,13 @@ class Learning:
         """A generation asks for this surface: whatever is solved by now is what it knows."""
         self._solved.setdefault(surface, self._ledger.solved())
 
-    def reference(self, surface: int, plain: Any, keep: Callable[[Callable[[], None]], None]) -> Any:
+    def reference(self, surface: int, plain: Any, fast: Any, keep: Callable[[Callable[[], None]], None]) -> Any:
         """The reference with which designs of a surface are evaluated.
 
         Args:
             surface: its number.
             plain: the true level's reference.
+            fast: level 1's; None in a run without level 1.
             keep: writes to the file, whenever it can be written.
         """
         if surface not in self._references:
@@ -48,7 +49,7 @@ class Learning:
                 self._references[surface] = plain
             else:
                 documents = self._store.documents(self._solved[surface])
-                self._references[surface], errors = self._physics.learn(self._case, plain, documents)
+                self._references[surface], errors = self._physics.learn(self._case, plain, documents, fast)
                 keep(lambda: self._remember(surface, errors))
         return self._references[surface]
 

@@ -435,7 +435,9 @@ class RunDriver:
         plain = self._reference(candidate.level)
         if candidate.surface:
             self._catch_up()  # what is learnt from stands in the file
-            return self._learning.reference(candidate.surface, plain, self._keep)
+            begins_fast = self._case.optimization.level1_generations > 0
+            fast = self._reference(FAST.number) if begins_fast else None
+            return self._learning.reference(candidate.surface, plain, fast, self._keep)
         if candidate.level == FAST.number and candidate.origin != "initial":
             return self._searching
         return plain

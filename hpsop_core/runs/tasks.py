@@ -34,9 +34,9 @@ ReferenceFunction: TypeAlias = Callable[[Case, int], Any]
 WarmUpFunction: TypeAlias = Callable[[Case, int, Any], None]
 """(case, level, reference): whatever makes the first evaluation as quick as the others; picklable."""
 
-LearnFunction: TypeAlias = Callable[[Case, Any, Sequence[Mapping[str, Any]]], tuple[Any, Mapping[str, float]]]
-"""(case, reference, solved designs' JSON) -> the reference with what was learnt, and how far off that is, by name; the
-reference as it was, and nothing, where the designs are too few."""
+LearnFunction: TypeAlias = Callable[[Case, Any, Sequence[Mapping[str, Any]], Any], tuple[Any, Mapping[str, float]]]
+"""(case, reference, solved designs' JSON, level 1's reference or None without level 1) -> the reference with what
+was learnt, and how far off that is, by name; the reference as it was, and nothing, where the designs are too few."""
 
 _NICENESS = 10
 _PR_SET_PDEATHSIG = 1

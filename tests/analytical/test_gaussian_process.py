@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 from scipy.linalg import cho_factor, cho_solve
 
-from hpsop_core.evaluation.gaussian_process import GaussianProcess, _correlation, _loss, fit
+from hpsop_core.evaluation.gaussian_process import GaussianProcess, _correlation, _loss, _Pairs, fit
 from hpsop_core.typing_aliases import Array
 
 
@@ -45,13 +45,13 @@ def test_far_from_its_points_it_knows_that_it_does_not_know(process: GaussianPro
 def test_the_likelihoods_gradient() -> None:
     generator = np.random.default_rng(5)
     points, logarithms = generator.random((15, 3)), np.log([0.4, 0.8, 2.0, 1e-3])
-    squares = (points[:, None, :] - points[None, :, :]) ** 2
+    pairs = _Pairs.of(points)
     values = generator.normal(size=(15, 2))
-    gradient = _loss(logarithms, squares, values)[1]
+    gradient = _loss(logarithms, pairs, values)[1]
     for place in range(4):
         step = np.zeros(4)
         step[place] = 1e-5
-        higher, lower = (_loss(logarithms + sign * step, squares, values)[0] for sign in (1.0, -1.0))
+        higher, lower = (_loss(logarithms + sign * step, pairs, values)[0] for sign in (1.0, -1.0))
         assert gradient[place] == pytest.approx((higher - lower) / 2e-5, rel=1e-5, abs=1e-7)
 
 

@@ -265,7 +265,9 @@ def surface_case(case: Case) -> Case:
     return case.replaced("optimization", **settings)
 
 
-def learn(case: Case, reference: object, solved: Sequence[Mapping[str, Any]]) -> tuple[Learnt, dict[str, float]]:
+def learn(
+    case: Case, reference: object, solved: Sequence[Mapping[str, Any]], fast: object
+) -> tuple[Learnt, dict[str, float]]:
     """A surface whose error depends on every design that it was learnt from."""
     assert all(data["level"] == 2 and not data["predicted"] for data in solved)
     total = sum(lot(DesignVariables.from_dict(data["variables"]), 2) for data in solved)

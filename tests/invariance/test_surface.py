@@ -9,9 +9,15 @@ import pytest
 
 from hpsop_core.case.case import Case, load_case
 from hpsop_core.case.variables import DesignVariables
+from hpsop_core.evaluation import surface as learnt_surface
 from hpsop_core.evaluation.evaluate import evaluate
+from hpsop_core.evaluation.levels import WaveAnswer
+from hpsop_core.evaluation.propeller_answer import PropellerAnswer
 from hpsop_core.evaluation.reference import Reference, learnt, reference_for
 from hpsop_core.evaluation.result import Ok
+from hpsop_core.evaluation.surface import RESISTANCE_DOUBT, Told
+from hpsop_core.evaluation.wave_correction import WaveCorrection
+from hpsop_core.hydro.operating_point import PropellerCurve
 from hpsop_core.optimization.sampling import latin_hypercube
 from tests.two_speeds import TWO_SPEEDS
 
@@ -110,10 +116,67 @@ def test_few_clipped_or_predicted_designs_teach_nothing(case: Case, reference: R
     assert learnt(case, reference, [{**data, "predicted": True} for data in documents])[0].surface is None
 
 
-def test_with_a_limit_on_back_cavitation_the_propeller_is_solved(case: Case, surface: Reference) -> None:
+def test_doubt_is_of_the_resistance(solved: list[Ok]) -> None:
+    conditions = solved[0].conditions
+    shares = [condition.wave_resistance / condition.total_resistance for condition in conditions]
+    just = [RESISTANCE_DOUBT / share for share in shares]
+    nothing = PropellerAnswer(PropellerCurve(np.array([0.2, 1.0]), np.zeros(2), np.zeros(2)), None)
+    waves = (WaveAnswer(1.0),) * len(shares)
+    assert Told(waves, tuple(0.99 * value for value in just), nothing).is_sure(conditions)
+    for place in range(len(shares)):
+        more = [1.01 * value if index == place else 0.0 for index, value in enumerate(just)]
+        assert not Told(waves, tuple(more), nothing).is_sure(conditions)
+
+
+def test_who_doubts_everything_solves_everything(
+    case: Case, reference: Reference, surface: Reference, solved: list[Ok], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    variables = solved[0].variables
+    guess = evaluate(case, variables, 1, surface)
+    assert guess.ok and guess.predicted
+    monkeypatch.setattr(learnt_surface, "RESISTANCE_DOUBT", 0.0)
+    asked, truth = evaluate(case, variables, 1, surface), evaluate(case, variables, 1, reference)
+    assert dataclasses.replace(asked, elapsed=0.0) == dataclasses.replace(truth, elapsed=0.0)
+
+
+def _correction(case: Case, solved: list[Ok]) -> WaveCorrection:
+    """Of hulls that both levels gave these waves for."""
+    inputs, waves = [], []
+    for place in range(len(case.conditions.weights)):
+        rows = [learnt_surface._solved_inputs(result.as_dict(), place) for result in solved]
+        inputs.append(tuple(tuple(map(float, row)) for row in rows))
+        own = [c.wave_coefficient / c.wave_calibration for c in (result.conditions[place] for result in solved)]
+        waves.append(tuple(map(float, np.log(own))))
+    return WaveCorrection(tuple(inputs), tuple((0.0,) * len(solved) for _ in inputs), true_waves=tuple(waves))
+
+
+def test_the_hulls_that_taught_level_1_are_learnt_from(case: Case, reference: Reference, solved: list[Ok]) -> None:
+    few, others = [result.as_dict() for result in solved[:25]], _correction(case, solved[25:])
+    fast = dataclasses.replace(reference, basis=dataclasses.replace(reference.basis, correction=others))
+    alone, taught = learnt(case, reference, few), learnt(case, reference, few, fast)
+    assert alone[1]["designs"] == taught[1]["designs"] == 25, "errors are told of designs that were solved as a whole"
+    found = {"alone": 0, "taught": 0}
+    for variables in designs(case, 40, 2):
+        truth = evaluate(case, variables, 1, reference)
+        assert truth.ok
+        for name, (who, _) in (("alone", alone), ("taught", taught)):
+            guess = evaluate(case, variables, 1, who)
+            assert guess.ok
+            found[name] += guess.predicted
+            for ours, theirs in zip(guess.conditions, truth.conditions, strict=True):
+                assert ours.total_resistance == pytest.approx(theirs.total_resistance, rel=5e-3)
+    assert found["taught"] >= 2 * max(1, found["alone"])
+    # a run file of an earlier version kept none of it
+    old = dataclasses.replace(fast.basis, correction=dataclasses.replace(others, true_waves=()))
+    assert learnt(case, reference, few, dataclasses.replace(reference, basis=old))[1] == alone[1]
+
+
+def test_with_a_limit_on_back_cavitation_the_propeller_is_solved(
+    case: Case, surface: Reference, solved: list[Ok]
+) -> None:
     limited = case.replaced("constraints", back_cavitation_limit=0.1)
-    result = evaluate(limited, case.initial.variables, 1, surface)
-    exact = evaluate(limited, case.initial.variables, 1, dataclasses.replace(surface, surface=None))
+    result = evaluate(limited, solved[0].variables, 1, surface)
+    exact = evaluate(limited, solved[0].variables, 1, dataclasses.replace(surface, surface=None))
     assert result.ok and exact.ok and result.predicted
     assert result.open_water == exact.open_water
 

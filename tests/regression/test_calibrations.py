@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import math
 
 import pytest
 
@@ -31,11 +32,20 @@ def test_all_that_is_shipped_is_what_is_computed(name: str) -> None:
         if kind == shipped_calibration.INITIAL:
             assert kept == pytest.approx(content, rel=1e-9)
             continue
-        for one, other in zip(kept["logarithms"], content["logarithms"], strict=True):
-            assert one == pytest.approx(other, abs=1e-9)
+        for part in ("logarithms", "true_waves"):
+            for one, other in zip(kept[part], content[part], strict=True):
+                assert one == pytest.approx(other, abs=1e-9)
         for rows, others in zip(kept["inputs"], content["inputs"], strict=True):
             for one, other in zip(rows, others, strict=True):
                 assert one == pytest.approx(other, rel=1e-9, abs=1e-12)
+
+
+def test_the_first_hull_that_is_learnt_from_is_the_initial_one() -> None:
+    case = load_case("dtc-p4119")
+    learnt = WaveCorrection.from_dict(shipped_calibration.shipped(case, shipped_calibration.LEARNT))
+    initial = shipped_calibration.shipped(case, shipped_calibration.INITIAL)
+    assert [math.exp(logarithms[0]) for logarithms in learnt.true_waves] == pytest.approx(initial, rel=1e-9)
+    assert {len(rows) for part in (learnt.inputs, learnt.logarithms, learnt.true_waves) for rows in part} == {97}
 
 
 def test_shipped_kernels_are_those_that_are_found() -> None:
