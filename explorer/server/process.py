@@ -9,6 +9,8 @@ from hpsop_core.kept_memory import give_back_memory, share_freed_memory
 
 # A press goes through four threads before its answer is on its way; each may wait a turn for one that draws news.
 _TURN_SECONDS = 0.001
+# how many searches of the young for one of all that live, a tenth of a second; Python's own number is 10
+_SELDOM = 60
 
 
 def serve_from_here() -> None:
@@ -17,6 +19,8 @@ def serve_from_here() -> None:
     share_freed_memory()
     # what has been imported stays: a search for garbage, which stops every thread, need not look through it
     gc.freeze()
+    # and next to nothing of what a large run holds is garbage: that is looked through when something has gone (tidy)
+    gc.set_threshold(*gc.get_threshold()[:2], _SELDOM)
 
 
 def tidy() -> None:

@@ -7,13 +7,38 @@ waiting one. What a person's gesture asks for goes before what a run's news ask 
 
 from __future__ import annotations
 
+import contextlib
 import logging
 import threading
 import time
 from collections import OrderedDict
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 
 _LOG = logging.getLogger("hpsop.explorer")
+
+
+class Turn:
+    """One after another of what several threads do in the background, as far as nobody waits long for the others.
+
+    All at once they would share Python's lock with whatever answers a gesture, and each would take as long as all.
+
+    Args:
+        patience: seconds after which a thread no longer waits for its turn: another's task may take that much longer.
+    """
+
+    def __init__(self, patience: float) -> None:
+        self._patience = patience
+        self._lock = threading.Lock()
+
+    @contextlib.contextmanager
+    def taken(self) -> Iterator[None]:
+        """Within, the others wait."""
+        own = self._lock.acquire(timeout=self._patience)
+        try:
+            yield
+        finally:
+            if own:
+                self._lock.release()
 
 
 class LatestWorker:
@@ -24,6 +49,7 @@ class LatestWorker:
         on_error: told about an exception of a task (which never ends the thread).
         settle: seconds to wait before each task, in which newer ones may replace it.
         calm: seconds after a gesture's task in which nothing else begins: its answer has to reach the screen.
+        turn: shared with other threads, or None.
     """
 
     def __init__(
@@ -32,8 +58,10 @@ class LatestWorker:
         on_error: Callable[[BaseException], None] | None = None,
         settle: float = 0.0,
         calm: float = 0.0,
+        turn: Turn | None = None,
     ) -> None:
         self._settle = settle
+        self._turn = turn
         self._calm = calm
         self._calm_until = 0.0
         self._first: OrderedDict[str, Callable[[], None]] = OrderedDict()
@@ -110,23 +138,27 @@ class LatestWorker:
                     self._condition.wait_for(lambda: self._closed or bool(self._first), calm)
             if self._settle:
                 time.sleep(self._settle)
+            with self._turn.taken() if self._turn is not None else contextlib.nullcontext():
+                self._run_next()
+
+    def _run_next(self) -> None:
+        with self._condition:
+            if self._closed:
+                self._busy = False
+                return
+            self._pressed = bool(self._first)
+            _, task = (self._first or self._tasks).popitem(last=False)
+        try:
+            task()
+        # A view that stumbles must not take the page down; the user is told, the log keeps the trace.
+        except Exception as error:  # noqa: BLE001
+            if not self._closed:
+                _LOG.exception("a view failed")
+                if self._on_error is not None:
+                    self._on_error(error)
+        finally:
             with self._condition:
-                if self._closed:
-                    self._busy = False
-                    return
-                self._pressed = bool(self._first)
-                _, task = (self._first or self._tasks).popitem(last=False)
-            try:
-                task()
-            # A view that stumbles must not take the page down; the user is told, the log keeps the trace.
-            except Exception as error:  # noqa: BLE001
-                if not self._closed:
-                    _LOG.exception("a view failed")
-                    if self._on_error is not None:
-                        self._on_error(error)
-            finally:
-                with self._condition:
-                    self._busy = False
-                    if self._pressed:
-                        self._calm_until = time.monotonic() + self._calm
-                    self._condition.notify_all()
+                self._busy = False
+                if self._pressed:
+                    self._calm_until = time.monotonic() + self._calm
+                self._condition.notify_all()

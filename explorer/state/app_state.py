@@ -9,7 +9,7 @@ from collections.abc import Callable
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
-from explorer.server.worker import LatestWorker
+from explorer.server.worker import LatestWorker, Turn
 from explorer.state.draft import Draft, DraftSnapshot
 from explorer.state.history import History
 from explorer.state.hub import Hub
@@ -20,6 +20,8 @@ from hpsop_core.case.case import Case
 from hpsop_core.errors import HpsopError
 
 _MOST_REMEMBERED = 50
+# a browser's curves are made within a tenth of that, and wait no longer for another one's maps, which take seconds
+_TURN_SECONDS = 0.5
 
 
 class Watcher(Protocol):
@@ -54,6 +56,7 @@ class AppState:
         coming: the run of the library that is being opened, or "": until it stands all that is shown is the one before.
         ship: a ship of the user's own on its way to a case.
         history: changes of the settings, which can be taken back.
+        ships, maps: whose turn it is among the browsers' threads that make the ship in 3D, and maps and curves.
     """
 
     draft: Draft
@@ -70,6 +73,8 @@ class AppState:
     coming: str = ""
     ship: OwnShip = field(default_factory=OwnShip)
     history: History[DraftSnapshot] = field(default_factory=History)
+    ships: Turn = field(default_factory=lambda: Turn(_TURN_SECONDS))
+    maps: Turn = field(default_factory=lambda: Turn(_TURN_SECONDS))
 
     # ---- browsers --------------------------------------------------------------------------------------------------
     def join(self, client_id: int, watcher: Watcher) -> None:

@@ -88,9 +88,9 @@ class Session:
         self.size = (1366, 768)
         self.legends: dict[str, Markup] = {}
         self.worker = LatestWorker(f"page-{client_id}", self._stumbled, calm=_ANSWER_SECONDS)
-        self.heavy = LatestWorker(f"scene-{client_id}", self._stumbled, _SCENE_SETTLES)
+        self.heavy = LatestWorker(f"scene-{client_id}", self._stumbled, _SCENE_SETTLES, turn=app.ships)
         # maps and curves by level 2 take seconds: the next design's geometry must not wait for them
-        self.slow = LatestWorker(f"maps-{client_id}", self._stumbled)
+        self.slow = LatestWorker(f"maps-{client_id}", self._stumbled, turn=app.maps)
         self.hub = Hub(self.worker)
         self.gestures = Gestures(self.worker)
         self._closers: list[Callable[[], None]] = []

@@ -52,6 +52,8 @@ class OverlayView:
             for name in list(self._drawn):
                 self._remove(name)
             return
+        if not (options.waves or options.pressure or self._drawn):
+            return
         # the blades' map hangs on the propeller's frame, which turns: the ship has to stand first
         session.heavy.wait_until_idle(30.0)
         index = min(options.condition, len(shown.evaluation.conditions) - 1)

@@ -16,7 +16,7 @@ from explorer.charts.parallel import axes_of, brushed, moved
 from explorer.charts.scatter import pick_scatter, scatter_chart, scatter_limits, scatter_rows
 from explorer.scene.camera import PRESETS
 from explorer.server.bridge import PageEvent
-from explorer.server.worker import LatestWorker
+from explorer.server.worker import LatestWorker, Turn
 from explorer.services.library import RunLibrary
 from explorer.state.app_state import AppState
 from explorer.state.chart_options import ChartOptions
@@ -106,6 +106,42 @@ def test_a_gesture_and_what_follows_from_it_go_before_a_runs_news():
     finally:
         held.set()
         worker.close()
+
+
+def test_background_work_of_browsers_takes_turns_and_none_waits_long_for_another():
+    turn = Turn(0.5)
+    workers = [LatestWorker(f"maps {number}", turn=turn) for number in range(3)]
+    running, most, go_on = [], [], threading.Event()
+
+    def short() -> None:
+        running.append(1)
+        most.append(len(running))
+        time.sleep(0.02)
+        running.pop()
+
+    def drain() -> None:
+        assert all(worker.wait_until_idle(60.0) for worker in workers)
+
+    try:
+        for worker in workers * 5:
+            worker.every(short)
+        drain()
+        assert (len(most), max(most)) == (15, 1)
+        # one takes seconds: the others go on beside it
+        workers[0].every(lambda: bool(go_on.wait(60.0)))
+        workers[1].every(short)
+        assert workers[1].wait_until_idle(60.0)
+        assert not workers[0].wait_until_idle(0.0)
+        go_on.set()
+        drain()
+        # and what failed has given its turn back
+        workers[0].every(lambda: 1 // 0)
+        drain()
+        assert turn._lock.acquire(timeout=0.0)
+    finally:
+        go_on.set()
+        for worker in workers:
+            worker.close()
 
 
 def test_a_view_that_cannot_be_made_gives_its_tab_back():
