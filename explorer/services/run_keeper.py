@@ -439,22 +439,26 @@ class RunKeeper:
             reader = self._reader
             if reader is None or self._picture is None or self._picture.columns:
                 return
-        with contextlib.suppress(HpsopError):
+
+        def between() -> None:
+            make_way()
+            if self._closed.is_set():
+                raise _GivenUpError
+
+        with contextlib.suppress(HpsopError, _GivenUpError):
             # what cannot be read is said when the picture is made
-            news = self._decoded(reader, make_way)
+            news = self._decoded(reader, between)
             with self._guard:
                 self._take(news)
 
     def _read_new(self, reader: RunReader) -> None:
         self._take(self._decoded(reader, lambda: None))
 
-    def _decoded(self, reader: RunReader, make_way: Callable[[], None]) -> _News:
+    def _decoded(self, reader: RunReader, between: Callable[[], None]) -> _News:
         news = _News()
-        for point, evaluation in reader.news(self._complete_until(reader), self._known):
+        for point, evaluation in reader.news(self._complete_until(reader), self._known, between):
             if len(news.points) % _SLICE == _SLICE - 1:
-                make_way()
-                if self._closed.is_set():
-                    return _News()
+                between()
             values = (quantity.value(evaluation) for quantity in self._quantities)
             news.points.append(point)
             news.table.append(np.array([np.nan if value is None else value for value in values], dtype=float))
@@ -503,6 +507,10 @@ class RunKeeper:
             # it is this program that holds the file: the run begins or has just ended, and nobody else drives it
             return STOPPED, reason
         return _STATES.get(state, state), reason or self._shape
+
+
+class _GivenUpError(Exception):
+    """Nobody will see any more what is being read."""
 
 
 @dataclasses.dataclass

@@ -5,7 +5,7 @@ from __future__ import annotations
 import itertools
 import sqlite3
 import zlib
-from collections.abc import Iterator, Sequence
+from collections.abc import Callable, Iterator, Sequence
 from functools import cached_property
 from pathlib import Path
 from typing import Any
@@ -15,6 +15,8 @@ from hpsop_core.runs.packing import unpack
 from hpsop_core.runs.records import check_agreement
 from hpsop_core.runs.schema import CHECKSUMS_SINCE, COLUMNS, RUN_KEYS, cells
 from hpsop_core.runs.ship import LARGEST_FILE, ShipFile
+
+_BETWEEN = 32  # records
 
 
 class RunContent:
@@ -58,6 +60,7 @@ class RunContent:
         condition: str = "",
         arguments: Sequence[Any] = (),
         checksums: list[int] | None = None,
+        between: Callable[[], None] | None = None,
     ) -> Iterator[tuple[Any, ...]]:
         """Records of a table, with the columns of ``schema.COLUMNS``.
 
@@ -66,25 +69,29 @@ class RunContent:
             condition: SQL after the table's name ("WHERE ... ORDER BY ...").
             arguments: of the condition.
             checksums: takes those of the records, in their order.
+            between: called every millisecond or two of a long table, by whom something may be more urgent.
 
         Raises:
             DamagedRunError: a record is not what was written.
         """
         names = f"{cells(table, self._version)},{'checksum' if self._sealed else 'NULL'}"
-        for row in self._connection.execute(f"SELECT {names} FROM {table} {condition}", arguments):
+        selected = self._connection.execute(f"SELECT {names} FROM {table} {condition}", arguments)
+        for number, row in enumerate(selected, 1):
+            if between is not None and number % _BETWEEN == 0:
+                between()
             cells_of = checked(self._path, table, row)
             if checksums is not None:
                 checksums.append(row[-1])
             yield cells_of
 
-    def all_rows(self, table: str) -> list[tuple[Any, ...]]:
-        """Every record of a table, ascending in its first column; none may be missing.
+    def all_rows(self, table: str, between: Callable[[], None] | None = None) -> list[tuple[Any, ...]]:
+        """Every record of a table, ascending in its first column; none may be missing. ``between`` as in ``rows``.
 
         Raises:
             DamagedRunError: one is missing, one too many, or not what was written.
         """
         checksums: list[int] = []
-        rows = self.sorted_rows(table, checksums=checksums)
+        rows = self.sorted_rows(table, checksums=checksums, between=between)
         if self._sealed:
             # Of what was read: a tree that holds a record twice gives good checksums.
             self.tally.check(self._path, table, checksums)
@@ -96,6 +103,7 @@ class RunContent:
         condition: str = "",
         arguments: Sequence[Any] = (),
         checksums: list[int] | None = None,
+        between: Callable[[], None] | None = None,
     ) -> list[tuple[Any, ...]]:
         """As ``rows``, ascending in the table's first column.
 
@@ -103,7 +111,7 @@ class RunContent:
             DamagedRunError: they are not, though SQLite was asked for it: the file's tree is not in order.
         """
         order = COLUMNS[table][0]
-        rows = list(self.rows(table, f"{condition} ORDER BY {order}", arguments, checksums))
+        rows = list(self.rows(table, f"{condition} ORDER BY {order}", arguments, checksums, between))
         if any(not one[0] <= two[0] for one, two in itertools.pairwise(rows)):
             raise DamagedRunError(self._path, f"its table '{table}' is not in order")
         return rows

@@ -7,7 +7,7 @@ import dataclasses
 import json
 import os
 import time
-from collections.abc import Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -451,17 +451,20 @@ class RunReader:
             points = map(_point, rows)
             return tuple(point for point in points if level in (None, point.level))
 
-    def news(self, after: int, known: Container[int]) -> Iterator[tuple[ArchivePoint, Evaluation]]:
+    def news(
+        self, after: int, known: Container[int], between: Callable[[], None] | None = None
+    ) -> Iterator[tuple[ArchivePoint, Evaluation]]:
         """Designs of the search and by hand that are not known yet, each with all its numbers, which are not kept here:
         those of a whole run are some 200 MB.
 
         Args:
             after: as in ``archive``, of the search's.
             known: ids that are passed over.
+            between: called again and again until the first of them is there, by whom something may be more urgent.
         """
         with self._reading() as content:
             errors = known_errors(content.values())
-            for row in (*self._search_rows(content, after), *self._hand_rows(content)):
+            for row in (*self._search_rows(content, after, between), *self._hand_rows(content)):
                 if row[0] not in known:
                     evaluation = self._placed(content.document(row))
                     yield _point(row), _with_errors(evaluation, errors.get(str(row[0])))
@@ -472,12 +475,14 @@ class RunReader:
             raise DamagedRunError(self.path, "a design made by hand is missing")
         return [row for row in rows if row[_ORIGIN] == "hand"]
 
-    def _search_rows(self, content: RunContent, after: int) -> list[tuple[Any, ...]]:
+    def _search_rows(
+        self, content: RunContent, after: int, between: Callable[[], None] | None = None
+    ) -> list[tuple[Any, ...]]:
         if after:
             which = "WHERE (id > ? OR id < ?) AND id < ?"
             rows = content.sorted_rows("evaluations", which, (after, FIRST_SEARCH_ID, HAND_IDS_BEGIN))
         else:
-            rows = content.all_rows("evaluations")
+            rows = content.all_rows("evaluations", between)
         self._check_none_missing(after, [row[0] for row in rows])
         return [row for row in rows if row[_ORIGIN] != "hand"]
 

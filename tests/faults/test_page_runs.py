@@ -74,6 +74,34 @@ def test_the_first_picture_of_a_large_run_has_its_points_and_the_next_one_all_nu
             assert np.array_equal(getattr(picture, name), getattr(whole, name), equal_nan=name == "objectives"), name
 
 
+def test_reading_a_large_run_makes_way_from_the_beginning_and_is_given_up(
+    keeper: RunKeeper, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    whole = keeper.picture()
+    monkeypatch.setattr("explorer.services.run_keeper._LARGE", 5)
+    monkeypatch.setattr("explorer.services.run_keeper._SLICE", 1000)
+    monkeypatch.setattr("hpsop_core.runs.content._BETWEEN", 4)
+    large = RunKeeper(keeper.path, lambda: None)
+    try:
+        assert large.picture().columns == ()
+        asked: list[int] = []
+
+        def until_closed() -> None:
+            asked.append(len(large._known))
+            if len(asked) == 3:
+                large._closed.set()
+
+        # its records are held against their checksums before the first of them is taken apart
+        large.read_ahead(until_closed)
+        assert asked == [0, 0, 0] and not large._known
+        large._closed.clear()
+        large.read_ahead(lambda: None)
+        assert len(large._known) == len(whole.ids)
+        assert np.array_equal(large.picture().table, whole.table, equal_nan=True)
+    finally:
+        large.close()
+
+
 def test_a_click_does_not_wait_for_a_picture_of_a_large_run(keeper: RunKeeper, monkeypatch: pytest.MonkeyPatch) -> None:
     reading, go_on = threading.Event(), threading.Event()
 
