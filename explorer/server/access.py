@@ -118,9 +118,12 @@ class Access:
             return _text(HTTPStatus.OK, _asset("frames.js"), "application/javascript")
         if urlsplit(request.path).path == f"/{_STYLE}":
             return _text(HTTPStatus.OK, page_style(), "text/css")
+        zipped = "gzip" in request.headers.get("Accept-Encoding", "")
+        # asked for it as it is: what viser would pack, slowly, would have to be unpacked again
+        request.headers.pop("Accept-Encoding", None)
         response = answer(connection, request)
         if response is not None and response.headers.get("Content-Type", "").startswith("text/html"):
-            self._add_script(response)
+            self._add_script(response, zipped)
         return response
 
     def _known(self, candidates: Sequence[str]) -> bool:
@@ -175,11 +178,9 @@ class Access:
         own = json.dumps([_spelled("http", host), *self._origins])
         return _text(HTTPStatus.OK, f"({_asset('access.js')})({own});\n", "application/javascript")
 
-    def _add_script(self, response: Response) -> None:
-        zipped = response.headers.get("Content-Encoding") == "gzip"
-        body = bytes(response.body)
+    def _add_script(self, response: Response, zipped: bool) -> None:
         if zipped not in self._page:
-            plain = gzip.decompress(body) if zipped else body
+            plain = bytes(response.body)
             ours = (
                 f'<head><script src="{_SCRIPT}"></script><script src="{_FRAMES}"></script>'
                 f'<link rel="stylesheet" href="{_STYLE}">'
@@ -187,8 +188,12 @@ class Access:
             plain = plain.replace(b"<head>", ours.encode(), 1).replace(b"<title>Viser<", b"<title>hpsop<", 1)
             self._page[zipped] = gzip.compress(plain, _FAST) if zipped else plain
         response.body = self._page[zipped]
-        del response.headers["Content-Length"]
-        response.headers["Content-Length"] = str(len(response.body))
+        for name, value in (
+            ("Content-Length", str(len(response.body))),
+            ("Content-Encoding", "gzip" if zipped else "identity"),
+        ):
+            del response.headers[name]
+            response.headers[name] = value
 
 
 def _query(path: str) -> list[tuple[str, str]]:

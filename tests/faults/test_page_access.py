@@ -127,6 +127,7 @@ def test_the_page_arrives_zipped_as_well(explorer: Explorer) -> None:
     plain = fetch(explorer, "/", Cookie=cookie)[2]
     status, headers, body = fetch(explorer, "/", **{"Cookie": cookie, "Accept-Encoding": "gzip"})
     assert (status, headers["content-encoding"]) == (200, "gzip")
+    assert fetch(explorer, "/", Cookie=cookie)[1]["content-encoding"] == "identity"
     assert int(headers["content-length"]) == len(body)
     assert gzip.decompress(body) == plain
 
