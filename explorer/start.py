@@ -13,12 +13,14 @@ import threading
 from typing import NoReturn
 
 from hpsop_core.lean_imports import lean_imports
+from hpsop_core.standard_streams import mend_standard_streams
 
 _ENDING_SECONDS = 10.0
 
 
 def main() -> NoReturn:
     """As ``explorer.app.main``, which may end by an exception; does not return."""
+    mend_standard_streams()
     with lean_imports():
         from explorer.app import main as page
         from explorer.server.process import serve_from_here

@@ -24,12 +24,12 @@ to_geomdl          hull or propeller as geomdl's NURBS surfaces
 
 What stands where, from the ground up: ``typing_aliases``, ``errors``, ``reading`` (files that strangers name),
 ``scratch`` (temporary folders), ``writing`` (whole files), ``version``, ``model_test``, ``markup`` (escaping),
-``lean_imports``, ``one_thread`` (the same bits everywhere), ``compiled`` (kernels), ``kept_memory`` (of solvers) and
-``assets`` (shipped files); ``geometry`` (shapes), ``hydro`` (solvers), ``machinery`` (the engine), ``case`` (what the
-user states), ``evaluation`` (a design's numbers), ``quantities`` (how they are written), ``charts`` (how they are
-drawn), ``optimization`` (the search), ``runs`` (the file, the workers, the controller); ``export``, ``report``,
-``validation`` and ``reproduction``; ``cli`` (the commands). Each imports only from those before it; each folder's
-docstring says what its files are for.
+``lean_imports``, ``one_thread`` (the same bits everywhere), ``standard_streams``, ``compiled`` (kernels),
+``kept_memory`` (of solvers) and ``assets`` (shipped files); ``geometry`` (shapes), ``hydro`` (solvers), ``machinery``
+(the engine), ``case`` (what the user states), ``evaluation`` (a design's numbers), ``quantities`` (how they are
+written), ``charts`` (how they are drawn), ``optimization`` (the search), ``runs`` (the file, the workers, the
+controller); ``export``, ``report``, ``validation`` and ``reproduction``; ``cli`` (the commands). Each imports only from
+those before it; each folder's docstring says what its files are for.
 
 SI units, radians inside; ship axes x forward from the after perpendicular, y to port, z up (docs/conventions.md).
 Everything is frozen. Bad input raises ``hpsop_core.errors.InputError``, one line with the remedy.

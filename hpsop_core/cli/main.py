@@ -13,6 +13,7 @@ from typing import NoReturn
 
 from hpsop_core.errors import HpsopError, InputError, message_line, shown
 from hpsop_core.lean_imports import lean_imports
+from hpsop_core.standard_streams import mend_standard_streams
 from hpsop_core.version import __version__
 
 USAGE_ERROR = 2
@@ -56,6 +57,8 @@ def build_parser(command: str | None = None) -> argparse.ArgumentParser:
 def main(arguments: Sequence[str] | None = None) -> int:
     """Run a command and return its exit code: 0 done, 1 a computation failed, 2 bad input, 130 interrupted."""
     words = sys.argv[1:] if arguments is None else list(arguments)
+    if arguments is None:
+        mend_standard_streams()
     with _quick() if words and words[0] in _SHORT else contextlib.nullcontext():
         return _run(words)
 

@@ -7,6 +7,7 @@ import io
 import json
 import os
 import pty
+import shlex
 import signal
 import subprocess
 import sys
@@ -171,6 +172,25 @@ def test_mistakes_are_one_line(
     assert code == 2 and printed.out == ""
     assert len(printed.err.splitlines()) == 1 and expected in printed.err
     assert not Path("new.hpsop").exists()
+
+
+@pytest.mark.parametrize("closed", ["<&-", ">&-", "2>&-", "<&- >&- 2>&-"])
+def test_streams_that_are_closed_lead_to_nothing(folder: Path, closed: str) -> None:
+    """As some services start their programs: the next file opened had the number of standard output."""
+    words = shlex.join(command("show", "run.hpsop"))
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[2])}
+    done = subprocess.run(
+        ["sh", "-c", f"{words} {closed}"], check=False, capture_output=True, text=True, cwd=folder, env=environment
+    )
+    assert (done.returncode, done.stderr) == (0, "")
+
+
+def test_a_terminal_without_greek_letters_has_their_escapes(folder: Path) -> None:
+    environment = {**os.environ, "PYTHONPATH": str(Path(__file__).resolve().parents[2]), "PYTHONIOENCODING": "ascii"}
+    words = command("evaluate", "dtc-p4119-paper")
+    done = subprocess.run(words, check=False, capture_output=True, text=True, cwd=folder, env=environment)
+    assert done.returncode == 0, done.stderr
+    assert "\\u" in done.stdout and done.stdout.isascii()
 
 
 def test_an_interrupt_pauses_cleanly_and_says_how_to_go_on(folder: Path, tmp_path: Path) -> None:

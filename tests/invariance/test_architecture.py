@@ -32,6 +32,7 @@ ORDER = (
     "units",
     "lean_imports",
     "one_thread",
+    "standard_streams",
     "kept_memory",
     "compiled",
     "assets",
