@@ -175,7 +175,7 @@ def test_the_page_stays_as_it_is(
             busy.append(Busy(page, channels, follow, seed))
         for browser in busy:
             browser.start()
-        begun_at, warm, memory = time.monotonic(), 0.0, []
+        begun_at, memory = time.monotonic(), []
         for number in itertools.count():
             spent = (time.monotonic() - begun_at) / 60.0
             if spent > MINUTES:
@@ -189,15 +189,17 @@ def test_the_page_stays_as_it_is(
             socket.socket.close()
             time.sleep(2.0)
             if spent > WARM_UP:
-                warm = warm or _resident()
                 memory.append(_resident())
         assert all(browser.is_alive() for browser in busy), "a gesture was lost"
         print(told([trip for browser in busy for trip in browser.trips if trip.ended], switches))
-        print(f"resident {warm:.0f} MB after the warm-up, {memory[-1]:.0f} MB at the end, at most {max(memory):.0f} MB")
+        # a look may fall into the reading of the large run, which takes 100 MB for two seconds
+        part = max(len(memory) // 4, 1)
+        warm, end = min(memory[:part]), min(memory[-part:])
+        print(f"resident {warm:.0f} MB after the warm-up, {end:.0f} MB at the end, at most {max(memory):.0f} MB")
         lines = [record.getMessage() for record in caplog.records]
         assert not [record for record in caplog.records if record.exc_info], lines
         # the allocator keeps some of what was freed
-        assert memory[-1] < 1.15 * warm
+        assert end < 1.15 * warm
     finally:
         for browser in busy:
             browser.stop.set()
