@@ -8,6 +8,7 @@ from __future__ import annotations
 
 import atexit
 import os
+import signal
 import sys
 import threading
 from typing import NoReturn
@@ -16,11 +17,14 @@ from hpsop_core.lean_imports import lean_imports
 from hpsop_core.standard_streams import mend_standard_streams
 
 _ENDING_SECONDS = 10.0
+_INTERRUPTED = 130
 
 
 def main() -> NoReturn:
     """As ``explorer.app.main``, which may end by an exception; does not return."""
     mend_standard_streams()
+    if signal.getsignal(signal.SIGINT) is signal.default_int_handler:
+        signal.signal(signal.SIGINT, _interrupted)
     with lean_imports():
         from explorer.app import main as page
         from explorer.server.process import serve_from_here
@@ -35,3 +39,14 @@ def main() -> NoReturn:
     sys.stdout.flush()
     sys.stderr.flush()
     os._exit(status)
+
+
+def _interrupted(*_: object) -> NoReturn:
+    """Ctrl-C until the page listens to it itself, for a second or two, and for another where a run is large.
+
+    Nothing has been begun that must be ended; an exception would come out of whatever is being loaded, as another one
+    where that tidies up behind itself.
+    """
+    sys.stderr.write("hpsop-explore: interrupted\n")
+    sys.stderr.flush()
+    os._exit(_INTERRUPTED)

@@ -95,6 +95,20 @@ def _commands(parser: argparse.ArgumentParser) -> set[str]:
     return {name for action in actions for name in action.choices}
 
 
+def test_an_interrupt_while_the_page_loads_is_one_line() -> None:
+    """A second or two, in which nothing listens to Ctrl-C yet."""
+    command = (
+        "import os, signal, sys\n"
+        "class Pressed:\n"
+        "    def find_spec(self, name, path=None, target=None):\n"
+        "        if name == 'explorer.layout': os.kill(os.getpid(), signal.SIGINT)\n"
+        "sys.meta_path.insert(0, Pressed())\n"
+        "from explorer.start import main; main()"
+    )
+    done = subprocess.run([sys.executable, "-c", command], capture_output=True, text=True, check=False)
+    assert (done.returncode, done.stdout, done.stderr) == (130, "", "hpsop-explore: interrupted\n")
+
+
 @pytest.mark.parametrize("name", [name for names in _ROOMS.values() for name in names])
 def test_a_command_is_where_it_is_looked_for(name: str) -> None:
     assert name in _commands(build_parser(name))
