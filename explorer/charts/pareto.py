@@ -86,7 +86,8 @@ def automatic_limits(picture: RunPicture, options: ParetoOptions) -> tuple[Limit
         front = picture.objectives[picture.rows(item.front)]
         x += front[:, 0].tolist()
         y += front[:, 1].tolist()
-    if len(x) == 1:
+    if set(x) == set(y) == {1.0}:
+        # nothing but the initial design
         return (0.9, 1.05), (0.9, 1.05)
     return padded(x, 0.05), padded(y, 0.07)
 
@@ -276,7 +277,8 @@ def pareto_chart(picture: RunPicture, background: Plot, marks: Sequence[Mark], k
     plot = background.copy()
     plot.keys += keys
     draw_marks(plot, marks)
-    if not len(picture.ids) and len(marks) <= 2:
+    # a run begins with the initial design, which is no answer yet
+    if len(picture.ids) <= 1 and not picture.generations and len(marks) <= 2:
         if picture.status == FAILED:
             words = "The run failed before its first generation."
         elif picture.status in ACTIVE:

@@ -10,6 +10,7 @@ from explorer.server.html_slot import Slot
 from explorer.services.library import LibraryEntry
 from explorer.services.runs import Runs
 from explorer.state.app_state import AppState
+from explorer.state.run_picture import ACTIVE
 from explorer.views.chips import GAP, NOTHING, box, chip, chips, soft
 from hpsop_core.markup import Markup, fill, joined
 
@@ -21,11 +22,22 @@ class LibraryView:
         self._app = app
         self._runs = runs
         self._html = Slot(gui)
+        self._under_way = ""
         app.hub.on(("library",), self.draw, self._html.failed)
+        app.hub.on(("run",), self._begun_or_ended, self._html.failed)
         self.draw()
+
+    def _running(self) -> str:
+        """The run on display while it is under way, or ""."""
+        return self._app.picture.name if self._app.picture.status in ACTIVE else ""
+
+    def _begun_or_ended(self) -> None:
+        if self._running() != self._under_way:
+            self.draw()
 
     def draw(self) -> None:
         """Draw everything again."""
+        self._under_way = self._running()
         rows = []
         for entry in self._runs.library():
             current = entry.name == self._app.picture.name
@@ -70,7 +82,8 @@ class LibraryView:
                     label.name or entry.title,
                     fill("{}<br>", label.note) if label.note else NOTHING,
                     fill("{}<br>", entry.title) if label.name else NOTHING,
-                    entry.summary,
+                    # what its file said when this was drawn is soon no longer true
+                    "under way, as is told above" if entry.name == self._under_way else entry.summary,
                     "comes with hpsop, only read" if entry.shipped else age,
                     entry.name,
                     boxes,

@@ -9,9 +9,9 @@ from unittest.mock import Mock
 import numpy as np
 import pytest
 
-from explorer.charts.pareto import ParetoOptions, newest_families, pareto_background
+from explorer.charts.pareto import ParetoOptions, automatic_limits, newest_families, pareto_background, pareto_chart
 from explorer.state.draft import Draft
-from explorer.state.run_picture import GenerationPicture, RunPicture
+from explorer.state.run_picture import RUNNING, GenerationPicture, RunPicture
 from explorer.state.shown import Shown
 from explorer.views.tables import warnings_html
 from explorer.views.whatif_view import WhatIfView
@@ -89,6 +89,16 @@ def test_the_pareto_chart_has_one_mark_with_a_count_for_a_family() -> None:
     apart = pareto_background(picture(FRONT[[0, 3, 4]]), ParetoOptions(), ("f1", "f2"), 500.0, 300.0).svg("pareto")
     assert "×" not in apart
     assert "one answer" in newest_families(picture(FRONT[:2]))[2]
+
+
+def test_a_run_that_has_only_its_initial_design_says_that_the_first_are_being_evaluated() -> None:
+    begun = dataclasses.replace(picture(np.array([[1.0, 1.0]])), generations=(), status=RUNNING)
+    assert automatic_limits(begun, ParetoOptions()) == ((0.9, 1.05), (0.9, 1.05))
+    background = pareto_background(begun, ParetoOptions(), ("f1", "f2"), 500.0, 300.0)
+    assert "being evaluated" in pareto_chart(begun, background, []).svg("pareto")
+    more = dataclasses.replace(picture(FRONT[:2]), generations=(), status=RUNNING)
+    background = pareto_background(more, ParetoOptions(), ("f1", "f2"), 500.0, 300.0)
+    assert "being evaluated" not in pareto_chart(more, background, []).svg("pareto")
 
 
 def test_the_pareto_charts_families_are_those_of_the_designs_own_errors() -> None:

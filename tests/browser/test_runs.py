@@ -104,6 +104,8 @@ def test_the_library_opens_continues_and_deletes_after_a_question(page, explorer
     assert generations(explorer) > 1
     press(page, "continue_run", second)
     wait_until(lambda: explorer.state.picture.name == second and generations(explorer) >= 2, 60, "the second goes on")
+    # its generations are told where they are kept up to date
+    page.wait_for_selector(f'[data-run="{second}"]:has-text("under way, as is told above")')
     # while it is driven, neither it can be deleted nor another be opened
     press(page, "open_run", first)
     time.sleep(0.5)
@@ -112,6 +114,7 @@ def test_the_library_opens_continues_and_deletes_after_a_question(page, explorer
     press(page, "run_stop")
     wait_until(lambda: explorer.state.picture.status == "stopped", 30, "the stop")
     page.wait_for_selector(f'[data-act="delete_run"][data-arg="{second}"][aria-disabled="false"]')
+    page.wait_for_selector(f'[data-run="{second}"]:has-text("stopped, generation {generations(explorer)} of")')
     press(page, "delete_run", first)
     page.wait_for_selector("text=Delete this run for good?")
     press(page, "delete_no")
