@@ -38,6 +38,7 @@ def run_report(run: Path) -> bytes:
         except OSError as error:
             raise InputError(f"report: its process does not start ({error.strerror})") from None
         if done.returncode or not target.is_file():
-            said = done.stderr.decode("utf-8", "replace").strip().split("\n")[-1]
+            # its line begins with the command's name
+            said = done.stderr.decode("utf-8", "replace").strip().split("\n")[-1].removeprefix("hpsop: ")
             raise InputError(said or "report: its process ended without a word")
         return target.read_bytes()

@@ -7,8 +7,10 @@ from pathlib import Path
 
 import pytest
 
+from explorer.services.reports import run_report
 from hpsop_core import load_case, writing
 from hpsop_core.cli.main import main
+from hpsop_core.errors import InputError
 from hpsop_core.report import report
 from hpsop_core.runs.controller import RunController
 from tests.two_speeds import TWO_SPEEDS
@@ -109,3 +111,9 @@ def test_reproduce_of_a_run_that_has_evaluated_nothing(
     for run in (empty, file):
         words = ["reproduce", "--to", str(tmp_path / "out"), "--run", str(run)]
         assert "its initial design is not evaluated yet" in refused(words, capsys)
+
+
+def test_the_page_says_what_the_command_says_without_its_name(tmp_path: Path) -> None:
+    with pytest.raises(InputError, match="no such run file") as refusal:
+        run_report(tmp_path / "gone.hpsop")
+    assert str(refusal.value).startswith(str(tmp_path))
