@@ -206,6 +206,7 @@ class RunKeeper:
             if self._read_only or self._controller is not None or is_being_written(self.path):
                 return
             with contextlib.suppress(HpsopError):
+                self.check_file()
                 store = RunStore(self.path)
                 try:
                     keep_errors(store, {design_id: evaluation.as_dict()})
@@ -283,9 +284,20 @@ class RunKeeper:
         if self._read_only:
             raise InputError("the demonstration run is read-only; press Start for a run of your own")
         if self._controller is None:
+            self.check_file()
             self._controller = RunController(self.path, workers=self._workers)
             self._controller.subscribe(self._on_event)
         return self._controller
+
+    def check_file(self) -> None:
+        """What is driven or written to is the file on display, and none that has come into its place since.
+
+        Raises:
+            InputError: it is gone, or another one stands there.
+        """
+        reader = self._ensure_reader()
+        if reader is not None:
+            reader.progress()
 
     def _ensure_reader(self) -> RunReader | None:
         # without the guard, which a picture of a large run holds for seconds: a click must not wait for it

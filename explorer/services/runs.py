@@ -311,7 +311,11 @@ class Runs:
         keeper = self._keeper
         if keeper is None:
             raise InputError("report: there is no run yet; press Start first")
-        return f"{keeper.path.stem}-report.html", run_report(keeper.path)
+        keeper.check_file()
+        content = run_report(keeper.path)
+        # its process has opened whatever stood there
+        keeper.check_file()
+        return f"{keeper.path.stem}-report.html", content
 
     def folder_text(self) -> str:
         """The folder, for people."""

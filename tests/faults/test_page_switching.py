@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import itertools
+import os
 import shutil
 import threading
 import time
@@ -36,6 +37,7 @@ from hpsop_core.case.case import load_case
 from hpsop_core.errors import InputError
 from hpsop_core.markup import Markup
 from hpsop_core.runs.controller import optimize
+from hpsop_core.runs.lock import is_being_written
 from hpsop_core.runs.reader import RunReader
 
 
@@ -134,6 +136,33 @@ def test_another_run_need_not_wait_until_a_large_one_has_been_read(
     answered.set()
     assert page.runs._pictures.wait_until_idle(60.0)
     assert read.count(finished[0]) < 10 < len(page.state.picture.ids)
+
+
+def test_a_run_that_came_into_the_place_of_the_one_on_display_is_not_driven(
+    page: Page, finished: tuple[Path, Path], tmp_path: Path
+) -> None:
+    shown, other = tmp_path / "shown.hpsop", tmp_path / "other.hpsop"
+    shutil.copy(finished[0], shown)
+    shutil.copy(finished[1], other)
+    page.runs.open(shown)
+    design = page.designs.shown(3)
+    assert design is not None
+    os.replace(other, shown)
+    before = shown.read_bytes()
+    for act in (
+        lambda: page.runs.extend(2),
+        lambda: page.runs.control("continue"),
+        lambda: page.runs.add_by_hand(design.evaluation),
+        page.runs.report,
+    ):
+        with pytest.raises(InputError, match="another file stands in its place"):
+            act()
+    page.runs.keep_errors(3, design.evaluation)
+    assert shown.read_bytes() == before and not is_being_written(shown)
+    shown.unlink()
+    with pytest.raises(InputError, match="is gone"):
+        page.runs.extend(2)
+    assert not shown.exists()
 
 
 def test_a_click_on_the_run_before_selects_nothing_in_the_next(page: Page, finished: tuple[Path, Path]) -> None:
