@@ -190,7 +190,8 @@ class OwnShips:
         table, told = read.table, read.understood
         path = str(self._kept("hull", normalised_text(table)))
         blades = ship.blades if propeller else None
-        case = ready_case(read, path, normalised_options(table), propeller, blades)
+        made = f"Made on the page of {told.name}: {told.layout}, lengths in {told.unit}; {told.axes}."
+        case = ready_case(read, path, normalised_options(table), propeller, blades, made)
         place = {"shaft_height": ship.shaft_height, "boss_x": ship.boss_x}
         case = case.replaced("hull", **{name: value for name, value in place.items() if value is not None})
         stem = re.sub(r"[^A-Za-z0-9]+", "-", Path(told.name).stem).strip("-")[:40].lower()
@@ -199,11 +200,6 @@ class OwnShips:
             case,
             name=stem or "own-ship",
             title=f"{told.name}, {size}",
-            description=(
-                f"Made on the page of {told.name}: {told.layout}, lengths in {told.unit}; {told.axes}.\n"
-                f"Check the speeds (Froude numbers that suit CB {told.block_coefficient:.3f}), the propeller and the "
-                "bounds."
-            ),
         )
 
     def _kept(self, what: str, text: str) -> Path:

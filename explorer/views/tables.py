@@ -65,7 +65,7 @@ def _written(text: str, evaluation: Evaluation) -> str:
     for condition in evaluation.conditions:
         number = condition.froude_number
         text = text.replace(f"Froude number {number:g}:", f"{condition.speed / KNOT:.4g} kn (Fn {number:.4g}):")
-    return text
+    return text[:1].upper() + text[1:]
 
 
 def comparison_table(initial: Shown | None, selected: Shown | None, quantities: Sequence[Quantity]) -> Markup:

@@ -29,11 +29,11 @@ SLOW = 0.9
 # high on full forms.
 FROUDE_LIMITS = (0.12, 0.34)
 LEAST_TRUSTED = 0.18
-_SLOW_SHIP = (
-    " At the {0:.3f} that suits such a fullness level 2 gives no waves: the speeds here are the slowest that can "
-    "be computed."
+_CHECK = " Check the speeds (Froude numbers that suit CB {1:.3f}), the propeller and the bounds."
+_CHECK_SLOW = (
+    " Check the propeller and the bounds. At the Froude number of {0:.3f} that suits CB {1:.3f} level 2 gives no "
+    "waves: the speeds here are higher, the slowest that can be computed."
 )
-
 _OPEN_SHAFT = (
     " The run rises over the shaft: the hub was put {0:.4g} m from AP, on an open shaft {1:.3g} m above the "
     "baseline, where the blades clear the hull; state hull.boss_x and hull.shaft_height."
@@ -65,7 +65,12 @@ def _propeller_place(parent: ParentHull) -> tuple[PropellerRoom | None, float]:
 
 
 def ready_case(
-    file: HullFile, path: str, options: ReadOptions, propeller: str = "", blade_count: int | None = None
+    file: HullFile,
+    path: str,
+    options: ReadOptions,
+    propeller: str = "",
+    blade_count: int | None = None,
+    made: str = "",
 ) -> Case:
     """A case for a hull of one's own.
 
@@ -75,6 +80,7 @@ def ready_case(
         options: with which it was read; what was assumed is stated in the case.
         propeller: file of a radial table; "" takes the shipped one.
         blade_count: of that table.
+        made: the description's first sentence, how the case was made; "": by ``hpsop hull``.
     """
     parent, told = file.parent, file.understood
     axes = options.axes
@@ -120,10 +126,9 @@ def ready_case(
         name=name,
         title=f"{Path(path).name}, L {parent.length:.4g} m, B {parent.breadth:.4g} m, T {parent.draft:.4g} m",
         description=(
-            f"Made by 'hpsop hull' for {Path(path).name}. Check the speeds (Froude numbers that suit CB "
-            f"{told.block_coefficient:.3f}), the propeller and the bounds."
+            (made or f"Made by 'hpsop hull' for {Path(path).name}.")
+            + (_CHECK_SLOW if speeds[1] > froude + 1e-3 else _CHECK).format(froude, told.block_coefficient)
             + (_OPEN_SHAFT.format(room.boss_x, room.shaft_height) if room is not None else "")
-            + (_SLOW_SHIP.format(froude) if speeds[1] > froude + 1e-3 else "")
         ),
         hull=hull,
         propeller=PropellerSection(geometry=propeller, geometry_blade_count=blade_count or 3)

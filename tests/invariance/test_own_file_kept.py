@@ -4,10 +4,13 @@ from __future__ import annotations
 
 import functools
 from pathlib import Path
+from unittest.mock import Mock
 
 import numpy as np
 import pytest
 
+from explorer.services.own_ships import OwnShips
+from explorer.state.own_ship import OwnShip, UserFile
 from hpsop_core.assets import asset_path
 from hpsop_core.geometry.hull.input import HullFile, ReadOptions, normalised_options, normalised_text, read_hull
 from hpsop_core.geometry.hull.input.deviations import section_deviations
@@ -69,6 +72,19 @@ def test_sides_meet_their_readings_at_the_ends_of_patches_too(name: str) -> None
             read = table.y[int(np.argmin(np.abs(table.x - x))), high]
             # four spans of a spline over the height of a side; 1.5 m where the station itself was left out
             assert np.max(np.abs(found - read), initial=0.0) < 0.3, (patch, x)
+
+
+def test_the_page_says_as_the_command_does_that_a_slow_ship_has_speeds_above_its_own(tmp_path: Path) -> None:
+    told = {}
+    for name in ("kvlcc2.csv", "s60_cb060.csv"):
+        desk = Mock(ship=OwnShip(hull=UserFile(name, b""), read=given_hull(name)))
+        ships = OwnShips(desk, tmp_path, Mock())
+        told[name] = ships.case().description
+        ships.close()
+        assert told[name].startswith(f"Made on the page of {name}: ")
+    assert "at the froude number of 0.16" in told["kvlcc2.csv"].lower() and "slowest that can" in told["kvlcc2.csv"]
+    assert "Froude numbers that suit CB 0.8" not in told["kvlcc2.csv"]
+    assert "Froude numbers that suit CB 0.598" in told["s60_cb060.csv"] and "slowest" not in told["s60_cb060.csv"]
 
 
 def test_a_kept_propeller_is_the_same(tmp_path: Path) -> None:
