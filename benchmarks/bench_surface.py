@@ -72,7 +72,7 @@ def main() -> None:
     asked = parser.parse_args()
     run = open_run(asked.run)
     solved, predicted = solved_and_predicted(run)
-    reference, errors = learnt(run.case, reference_for(run.case, 2), solved)
+    reference, errors = learnt(run.case, reference_for(run.case, 2), solved, reference_for(run.case, 1))
     print(f"learnt from {len(solved)} solved designs; its own held-out error: {dict(errors)}")
     places = np.unique(np.linspace(0, len(predicted) - 1, asked.designs).astype(int)) if predicted else []
     report("asked for by the run, never solved", run, reference, [predicted[place] for place in places])
