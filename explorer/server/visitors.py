@@ -23,6 +23,8 @@ _LOG = logging.getLogger("hpsop.explorer")
 _BUILDERS = 4
 # something has gone for so long before it is tidied away, and so long after that nothing is
 _TIDY_SECONDS, _TIDY_REST = 2.0, 15.0
+# browsers whose leaving cannot wait so long: a megabyte each
+_MANY = 20
 
 
 class _Visit:
@@ -68,7 +70,8 @@ class Visitors:
         self._build = build
         self._visits: dict[int, _Visit] = {}
         self._builders = ThreadPoolExecutor(_BUILDERS, thread_name_prefix="visitors")
-        self._closed = threading.Event()
+        self._urgent = threading.Event()
+        self._departed = 0
         self._tidied = -_TIDY_REST
         self._housekeeper = LatestWorker("housekeeper", settle=_TIDY_SECONDS)
         # coroutines run on viser's event loop, one after another
@@ -87,6 +90,9 @@ class Visitors:
         take_down = visit.leave() if visit is not None else None
         if take_down is not None:
             self._submit(take_down)
+        self._departed += 1
+        if self._departed >= _MANY:
+            self._urgent.set()
         self.tidy_soon()
 
     def tidy_soon(self) -> None:
@@ -95,9 +101,11 @@ class Visitors:
 
     def _tidy(self) -> None:
         # it stops every thread for a tenth of a second: who comes and goes all the time must not do that as often
-        if not self._closed.wait(max(self._tidied + _TIDY_REST - time.monotonic(), 0.0)):
-            tidy()
-            self._tidied = time.monotonic()
+        self._urgent.wait(max(self._tidied + _TIDY_REST - time.monotonic(), 0.0))
+        self._urgent.clear()
+        self._departed = 0
+        tidy()
+        self._tidied = time.monotonic()
 
     def _make(self, client: viser.ClientHandle, visit: _Visit) -> None:
         if not visit.gone:
@@ -110,6 +118,6 @@ class Visitors:
 
     def close(self) -> None:
         """Build no more."""
-        self._closed.set()
+        self._urgent.set()
         self._builders.shutdown(wait=False, cancel_futures=True)
         self._housekeeper.close()
