@@ -135,10 +135,11 @@
   }
 
   // ---- which tab of a panel was open: viser forgets it when the server starts anew --------------------------------
-  const listsOfTabs = () => Array.from(document.querySelectorAll("[role=tablist]"), (list) => {
+  const tabsOf = (list) => {
     const tabs = Array.from(list.querySelectorAll("[role=tab]"));
     return { tabs, key: "hpsop-tab " + tabs.map((tab) => tab.textContent.trim()).join("|") };
-  });
+  };
+  const listsOfTabs = () => Array.from(document.querySelectorAll("[role=tablist]"), tabsOf);
   function saveTabs() {
     if (!storage) return;
     listsOfTabs().forEach(({ tabs, key }) => {
@@ -152,9 +153,16 @@
     const open = Array.from(document.querySelectorAll('[role=tab][aria-selected="true"]'), (tab) => tab.textContent.trim()).join("|");
     if (open && open !== seen) H.send({ t: "tabs", arg: (seen = open) });
   }
+  // lists of which a tab was chosen by hand since the page was loaded: what was open before is over
+  const chosen = new Set();
+  ["pointerdown", "keydown"].forEach((type) => listen(document, type, (event) => {
+    const list = event.isTrusted && event.key !== "Tab" && event.target.closest && event.target.closest("[role=tablist]");
+    if (list) chosen.add(tabsOf(list).key);
+  }, true));
   function restoreTabs() {
     if (!storage) return;
     listsOfTabs().forEach(({ tabs, key }) => {
+      if (chosen.has(key)) return;
       const tab = tabs.find((item) => item.textContent.trim() === storage.getItem(key));
       if (!tab || tab.getAttribute("aria-selected") === "true") return;
       // a dock's tab listens to the pointer (it may be dragged) and to Enter, an ordinary one to clicks

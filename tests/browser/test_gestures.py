@@ -481,6 +481,24 @@ def test_reload_comes_back(page, session, explorer):
     assert np.isfinite(fresh.selected.evaluation.objectives["f1"])
 
 
+def test_a_tab_chosen_right_after_a_load_stays(page):
+    choose_tab(page, "Design")
+    page.wait_for_function("() => Object.values({...sessionStorage, ...localStorage}).includes('Design')")
+    # what is chosen now is kept nowhere: as where the page looks what was open before a press has been kept
+    page.add_init_script("if (!window.name) Storage.prototype.setItem = () => {}")
+    page.reload()
+    page.add_style_tag(content=".mantine-Notifications-root{display:none!important}")
+    table = page.get_by_role("tab", name="Table", exact=True).first
+    table.click()
+    # the page looks last a second and a half after it stands
+    page.wait_for_timeout(2500)
+    assert table.get_attribute("aria-selected") == "true"
+    page.evaluate("window.name = 'again'")
+    page.reload()
+    page.add_style_tag(content=".mantine-Notifications-root{display:none!important}")
+    page.wait_for_selector("[data-selected]", state="attached")
+
+
 def test_the_table_sorts_selects_filters_and_saves(page, session):
     choose_tab(page, "Table")
     press(page, "table_which", "all")

@@ -5,6 +5,7 @@ from __future__ import annotations
 import json
 import subprocess
 import sys
+import time
 from pathlib import Path
 
 import pytest
@@ -131,6 +132,16 @@ def test_a_thumb_is_dragged_and_the_readout_follows(page, explorer, draft):
         return slider.value == pytest.approx((low, high)) and shown == (low, high)
 
     wait_until(agrees, 20, "the readout")
+    # a drag is told in steps, and the last of them is a change like any other: what follows must not come before it
+    told = [draft.value("bounds", "length_to_breadth"), time.monotonic()]
+
+    def rests() -> bool:
+        now = draft.value("bounds", "length_to_breadth")
+        if now != told[0]:
+            told[:] = now, time.monotonic()
+        return time.monotonic() - told[1] > 1.0
+
+    wait_until(rests, 20, "the end of the drag")
     low, high = draft.value("bounds", "length_to_breadth")
     assert 6.5 < low < high == 8.5
 
