@@ -8,8 +8,8 @@ Where evaluations run: ``workers`` (what is asked of such a place), ``executor``
 cluster), ``tasks`` (what a worker does), ``parcels`` (what it is sent once), ``results`` (what it sends back),
 ``preload`` (what it has imported before it starts), ``batch`` (evaluating a generation on workers that may die). The
 run: ``replay`` (the loop, and why resuming is the same loop), ``ledger`` (which number stands for which design),
-``learning`` (the surfaces that a run learns), ``refinement`` (errors of its final designs); ``control``, ``events`` and
-``controller`` (a run in the hands of a person).
+``learning`` (the surfaces that a run learns), ``refinement`` (errors of its final designs), ``time_left``; ``control``,
+``events`` and ``controller`` (a run in the hands of a person).
 """
 
 from __future__ import annotations

@@ -32,6 +32,7 @@ from hpsop_core.runs.results import Result
 from hpsop_core.runs.schema import initial_id, software_versions
 from hpsop_core.runs.store import RunStore, StoreUnwritableError
 from hpsop_core.runs.tasks import Physics, failure, reference_task
+from hpsop_core.runs.time_left import level2_seconds
 from hpsop_core.runs.workers import Workers, WorkersLostError, WorkersUnavailableError
 
 _EVENT_INTERVAL = 0.1  # seconds between events about progress within a generation
@@ -568,7 +569,9 @@ class RunDriver:
                 continue
             recent = [elapsed for known_level, elapsed in times if known_level == level.number][-_RECENT:]
             estimate = self._level2_estimate() if level is TRUTH else None
-            if recent:
+            if estimate is not None and settings.surface:
+                seconds += level2_seconds(settings, count, estimate / settings.population, recent)
+            elif recent:
                 seconds += count * sum(recent) / len(recent)
             elif estimate is not None:
                 seconds += count * estimate
