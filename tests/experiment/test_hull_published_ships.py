@@ -87,6 +87,6 @@ def test_the_ready_case_is_computed_at_both_levels(file: str, options: ReadOptio
         assert result.ok, result.reason
         assert result.feasible, result.constraints
     assert case.bounds.project(case.initial.variables) == case.initial.variables
-    # and its search learns: in a fifth of the time, see docs/bring-your-ship.md
+    # and its search learns: in less than half the time, see docs/bring-your-ship.md
     assert case.optimization.surface
     assert tables_for(case) is not None
