@@ -5,7 +5,7 @@ from __future__ import annotations
 import dataclasses
 import threading
 import time
-from collections.abc import Callable
+from collections.abc import Callable, Iterator
 from dataclasses import dataclass, field
 from typing import Any, Protocol
 
@@ -167,19 +167,21 @@ class AppState:
 
     def wait_until_drawn(self, timeout: float) -> None:
         """Until every page has drawn the run, ``timeout`` seconds at most."""
-        give_up = time.monotonic() + timeout
-        for hub in self._hubs():
-            hub.wait_until_drawn(max(give_up - time.monotonic(), 0.0))
+        for hub, left in self._hubs_within(timeout):
+            hub.wait_until_drawn(left)
 
     def make_way(self, timeout: float) -> None:
         """While any browser's gesture waits for its answer, ``timeout`` seconds at most."""
-        give_up = time.monotonic() + timeout
-        for hub in self._hubs():
-            hub.wait_until_answered(max(give_up - time.monotonic(), 0.0))
+        for hub, left in self._hubs_within(timeout):
+            hub.wait_until_answered(left)
 
-    def _hubs(self) -> list[Hub]:
+    def _hubs_within(self, timeout: float) -> Iterator[tuple[Hub, float]]:
+        """All hubs, one after another, each with what is left then of so many seconds."""
+        give_up = time.monotonic() + timeout
         with self.lock:
-            return [self.hub, *(watcher.hub for watcher in self.sessions.values())]
+            hubs = [self.hub, *(watcher.hub for watcher in self.sessions.values())]
+        for hub in hubs:
+            yield hub, max(give_up - time.monotonic(), 0.0)
 
     def ask_to_delete(self, name: str) -> None:
         """Ask whether this run of the library is to be deleted, or no longer for ""."""

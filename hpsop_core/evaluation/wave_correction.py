@@ -39,9 +39,9 @@ class WaveCorrection:
     Attributes:
         inputs: (conditions, hulls, numbers) of ``hull_inputs``.
         logarithms: (conditions, hulls) ln of level 2's wave coefficient over level 1's.
-        true_waves: (conditions, hulls) ln of level 2's wave coefficient; empty in files of earlier versions.
         kernels: (conditions, numbers + 1) length scales and nugget of each regression where they have been found
             before, as in the shipped cases' files; empty where each process finds them: a third of a second.
+        true_waves: (conditions, hulls) ln of level 2's wave coefficient; empty in files of earlier versions.
     """
 
     inputs: tuple[Rows, ...]
@@ -58,7 +58,7 @@ class WaveCorrection:
         """What ``dataclasses.asdict`` described, from JSON."""
         inputs = tuple(tuple(tuple(row) for row in rows) for rows in data["inputs"])
         rest = ("logarithms", "kernels", "true_waves")
-        return cls(inputs, *(tuple(tuple(row) for row in data.get(name, ())) for name in rest))
+        return cls(inputs, **{name: tuple(tuple(row) for row in data.get(name, ())) for name in rest})
 
     def with_kernels(self) -> WaveCorrection:
         """The same with the kernels of its regressions."""
@@ -139,8 +139,9 @@ def learn_correction(case: Case, displaced_volume: float, speeds: Sequence[float
             "wave_calibration",
             f"only {len(logarithms[0])} hulls of the space can be solved to learn from; set wave_calibration = level2",
         )
-    rows = (tuple(map(tuple, values)) for values in (logarithms, true_waves))
-    return WaveCorrection(tuple(map(tuple, inputs)), next(rows), true_waves=next(rows))
+    return WaveCorrection(
+        tuple(map(tuple, inputs)), tuple(map(tuple, logarithms)), true_waves=tuple(map(tuple, true_waves))
+    )
 
 
 def own_froude_numbers(case: Case, hull: Hull, speeds: Sequence[float]) -> tuple[float, ...]:

@@ -567,10 +567,11 @@ class RunDriver:
         for level, count in ((FAST, at_level1), (TRUTH, left - at_level1)):
             if count == 0:
                 continue
-            recent = [elapsed for known_level, elapsed in times if known_level == level.number][-_RECENT:]
+            known = [elapsed for known_level, elapsed in times if known_level == level.number]
+            recent = known[-_RECENT:]
             estimate = self._level2_estimate() if level is TRUTH else None
             if estimate is not None and settings.surface:
-                seconds += level2_seconds(settings, count, estimate / settings.population, recent)
+                seconds += level2_seconds(settings, count, estimate / settings.population, known)
             elif recent:
                 seconds += count * sum(recent) / len(recent)
             elif estimate is not None:

@@ -40,7 +40,7 @@ def level2_seconds(
     Args:
         settings, generations: as of ``designs_to_solve``.
         seconds_a_design: that is solved, all workers at work.
-        known: seconds of its finished generations, the newest last.
+        known: seconds of all its finished generations, in their order: the first one was solved as a whole.
     """
     predicted = known[1:]
     typical = statistics.median(predicted) if len(predicted) >= _MEASURED else _PREDICTED_SECONDS

@@ -74,12 +74,15 @@ def page(tmp_path: Path) -> Iterator[Page]:
     made.worker.close()
 
 
+def copied(finished: tuple[Path, Path], folder: Path, *names: str) -> list[Path]:
+    """Runs that a test may write to, by these names."""
+    return [Path(shutil.copy(run, folder / name)) for run, name in zip(finished, names, strict=True)]
+
+
 def test_late_news_of_the_run_before_does_not_come_back(
     page: Page, finished: tuple[Path, Path], tmp_path: Path
 ) -> None:
-    first, second = tmp_path / "first.hpsop", tmp_path / "second.hpsop"
-    shutil.copy(finished[0], first)
-    shutil.copy(finished[1], second)
+    first, second = copied(finished, tmp_path, "first.hpsop", "second.hpsop")
     page.runs.open(first)
     keeper = page.runs._keeper
     assert keeper is not None
@@ -141,9 +144,7 @@ def test_another_run_need_not_wait_until_a_large_one_has_been_read(
 def test_a_run_that_came_into_the_place_of_the_one_on_display_is_not_driven(
     page: Page, finished: tuple[Path, Path], tmp_path: Path
 ) -> None:
-    shown, other = tmp_path / "shown.hpsop", tmp_path / "other.hpsop"
-    shutil.copy(finished[0], shown)
-    shutil.copy(finished[1], other)
+    shown, other = copied(finished, tmp_path, "shown.hpsop", "other.hpsop")
     page.runs.open(shown)
     design = page.designs.shown(3)
     assert design is not None
